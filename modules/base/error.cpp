@@ -1,0 +1,32 @@
+#include "base/error.h"
+
+namespace stackmesh {
+namespace {
+std::string join(const std::string& what, const std::string& where, const std::string& mend) {
+  std::string text = what;
+  if (!where.empty()) text += ", " + where;
+  if (!mend.empty()) text += "; " + mend;
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';  // an error is one line
+  return text;
+}
+}  // namespace
+
+Error::Error(ErrorKind kind, const std::string& what_is_wrong, const std::string& where,
+             const std::string& how_to_mend)
+    : std::runtime_error(join(what_is_wrong, where, how_to_mend)), kind_(kind) {}
+
+void fail_usage(const std::string& what, const std::string& where, const std::string& mend) {
+  throw Error(ErrorKind::usage, what, where, mend);
+}
+void fail_input(const std::string& what, const std::string& where, const std::string& mend) {
+  throw Error(ErrorKind::input, what, where, mend);
+}
+void fail_output(const std::string& what, const std::string& where, const std::string& mend) {
+  throw Error(ErrorKind::output, what, where, mend);
+}
+void fail_internal(const std::string& what, const std::string& where) {
+  throw Error(ErrorKind::internal, what, where, "this is a bug of stackmesh: please report it with the input");
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,23 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/geometry.h"
+
+namespace stackmesh {
+
+/// A triangle between two labels; its normal (right-hand rule) points from `below` into `above`.
+struct InterfaceTriangle {
+  std::array<std::int32_t, 3> v = {0, 0, 0};
+  Label below = 0, above = 0;
+};
+
+/// The interfaces of all labels as one triangle soup with shared vertices: conforming at junctions by
+/// construction. A label's closed surface is the set of its triangles, those with `above` == label reversed.
+struct InterfaceComplex {
+  std::vector<Vec3> points;  ///< mm, in stack coordinates until the pipeline maps them to the world
+  std::vector<InterfaceTriangle> triangles;
+};
+
+}  // namespace stackmesh

@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/geometry.h"
+
+namespace stackmesh {
+
+/// A label of the input: its own number, its name ("" when the input has none).
+struct LabelInfo {
+  Label number = 0;
+  std::string name;
+};
+
+/// A stack of label slices on a regular grid. `voxels` holds indices into `labels`, so that any label number
+/// costs two bytes a voxel; labels[0] is always the background, the others ascend by number.
+struct LabelVolume {
+  std::array<int, 3> size = {0, 0, 0};              ///< voxels along x (fastest), y, z
+  std::array<double, 3> spacing_mm = {1, 1, 1};     ///< > 0
+  Vec3 origin_mm;                                   ///< centre of voxel (0, 0, 0), LPS
+  std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< orthonormal, LPS
+  bool anatomical = true;                           ///< false: no anatomy is known (PNG stacks); coordinates as they are
+  std::vector<std::uint16_t> voxels;                ///< size[0] * size[1] * size[2]
+  std::vector<LabelInfo> labels;                    ///< labels[0] is {0, ""}
+  std::string kind;                                 ///< "nifti", "nrrd", "metaimage", "gipl", "slices", "masks"
+  std::vector<std::string> warnings;                ///< what reading found odd but could mend
+
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
+  }
+  double voxel_volume_mm3() const { return spacing_mm[0] * spacing_mm[1] * spacing_mm[2]; }
+  /// World position (LPS, mm) of a continuous voxel index.
+  Vec3 world(double i, double j, double k) const {
+    return origin_mm + (i * spacing_mm[0] * axes[0] + j * spacing_mm[1] * axes[1] + k * spacing_mm[2] * axes[2]);
+  }
+};
+
+/// Voxels of each entry of volume.labels.
+std::vector<std::size_t> count_voxels(const LabelVolume& volume);
+
+/// Keeps the labels at the given indices of volume.labels; the others become background. With `merge` the kept
+/// ones become one label, numbered as the smallest.
+LabelVolume select_labels(LabelVolume volume, const std::vector<std::size_t>& keep, bool merge);
+
+/// Resolves a user's selection such as "1,4,7-9,femur_left" to indices of `labels` (0 excluded), ascending.
+/// An empty text selects all. @throws Error(usage) for a malformed text, Error(input) for an absent label.
+std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, const std::string& text);
+
+}  // namespace stackmesh

@@ -1,0 +1,51 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/geometry.h"
+#include "model/label_volume.h"
+
+namespace stackmesh {
+
+/// A vertex of a section, in units of the stack's grid (exact integers; |x|, |y| <= 2^29).
+struct GridPoint {
+  std::int32_t x = 0, y = 0;
+};
+inline bool operator==(GridPoint a, GridPoint b) { return a.x == b.x && a.y == b.y; }
+inline bool operator!=(GridPoint a, GridPoint b) { return !(a == b); }
+inline bool operator<(GridPoint a, GridPoint b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
+/// A straight contour edge from points[a] to points[b], with the label on either side (x right, y up).
+struct SectionEdge {
+  std::int32_t a = 0, b = 0;
+  Label left = 0, right = 0;
+};
+
+/// A section: a planar partition of the plane z = z_mm into labels, given by its edges. Around every face the
+/// labels of the edges agree; outside of everything is the background. Once noded (see stitch/snap_rounding.h),
+/// edges meet at common end points only.
+struct Section {
+  double z_mm = 0;
+  std::vector<GridPoint> points;
+  std::vector<SectionEdge> edges;
+};
+
+/// Sections in ascending z, on one in-plane grid, and what they stand for.
+struct Stack {
+  double grid_x_mm = 1, grid_y_mm = 1;  ///< size of a grid unit along x and y
+  double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for contour input a typical edge
+  bool slices = true;   ///< true: a section stands for a slice that reaches half a gap to either side; false: plane cuts
+  std::vector<Section> sections;
+  std::vector<LabelInfo> labels;        ///< labels[0] is the background
+  Frame frame;                          ///< stack coordinates (mm) to world
+  std::vector<Label> touches_low, touches_high;  ///< labels whose end section lies on the image's own border: empty if unknown
+};
+
+/// Signed area (mm2) of a label in a section: the sum over its edges; exact before simplification.
+double label_area_mm2(const Stack& stack, const Section& section, Label label);
+
+/// The half gap that the first (low) or last section stands for beyond itself, mm; the pixel if there is one section only.
+double end_half_gap_mm(const Stack& stack, bool high);
+
+}  // namespace stackmesh
