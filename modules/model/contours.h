@@ -1,0 +1,30 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "model/geometry.h"
+
+namespace stackmesh {
+
+/// A closed polygon in the plane of its section; the last point joins the first. mm.
+struct ContourPolygon {
+  std::vector<std::array<double, 2>> points;
+};
+
+/// The polygons of one label at one height. Nesting decides what is inside (even-odd).
+struct ContourSection {
+  double z_mm = 0;
+  std::vector<ContourPolygon> polygons;
+};
+
+/// The contours of one label, as one file holds them. Orientation and order of the polygons are free.
+struct ContourFile {
+  std::string path;
+  Label label = 0;  ///< 0: the caller numbers it
+  std::string name;
+  std::vector<ContourSection> sections;  ///< ascending z
+  std::vector<std::string> warnings;
+};
+
+}  // namespace stackmesh
