@@ -1,0 +1,406 @@
+#include "volume/fill_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+
+#include "base/error.h"
+#include "volume/label_tets.h"
+#include "volume/worker_process.h"
+#include "volume/worker_protocol.h"
+
+namespace stackmesh {
+namespace {
+
+using Status = FillResult::Status;
+using worker::Clock;
+using worker::Reply;
+
+/// The complex as TetGen gets it: used points only, each place once.
+struct Compact {
+  std::vector<Vec3> points;               // not yet scaled
+  std::vector<std::int32_t> original;     // of each point: its index in the complex
+  std::vector<std::int32_t> corners;      // three a triangle
+  std::vector<InterfaceTriangle> welded;  // the triangles with each place's first point
+};
+
+void check_input(const InterfaceComplex& complex, const FillOptions& options) {
+  const auto count = static_cast<std::int64_t>(complex.points.size());
+  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
+    for (const std::int32_t v : complex.triangles[i].v) {
+      const std::string where = "triangle " + std::to_string(i);
+      if (v < 0 || v >= count) fail_internal("a surface triangle names a point that does not exist", where);
+      const Vec3& p = complex.points[v];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        fail_internal("a surface point is not finite", where);
+    }
+  }
+  const auto positive = [](const std::optional<double>& v, const char* name) {
+    if (v && !(std::isfinite(*v) && *v > 0))
+      fail_usage("a mesh size or quality is not positive", name, "give a value above 0");
+  };
+  positive(options.max_volume_mm3, "max-volume");
+  positive(options.radius_edge, "radius-edge");
+  positive(options.dihedral_deg, "dihedral");
+  if (std::isnan(options.timeout_s)) fail_usage("the time limit is not a number", "timeout", "give seconds");
+  if (std::getenv(worker::kGuardVariable))
+    fail_internal("the worker call reached fill_volume(): main() must hand it to tetgen_worker_main()",
+                  "fill_volume");
+}
+
+Compact compact(const InterfaceComplex& complex) {
+  std::vector<std::int32_t> used;
+  std::vector<std::int32_t> place(complex.points.size(), -1);  // first point at the same place
+  for (const InterfaceTriangle& t : complex.triangles)
+    for (const std::int32_t v : t.v)
+      if (place[v] < 0) {
+        place[v] = v;
+        used.push_back(v);
+      }
+  const auto less = [&](std::int32_t i, std::int32_t j) {
+    const Vec3 &a = complex.points[i], &b = complex.points[j];
+    if (a.x != b.x) return a.x < b.x;
+    if (a.y != b.y) return a.y < b.y;
+    if (a.z != b.z) return a.z < b.z;
+    return i < j;
+  };
+  std::sort(used.begin(), used.end(), less);
+  for (std::size_t i = 1; i < used.size(); ++i) {
+    const Vec3 &a = complex.points[used[i - 1]], &b = complex.points[used[i]];
+    if (a.x == b.x && a.y == b.y && a.z == b.z) place[used[i]] = place[used[i - 1]];
+  }
+  Compact out;
+  std::vector<std::int32_t> number(complex.points.size(), -1);
+  for (std::size_t i = 0; i < complex.points.size(); ++i) {
+    if (place[i] != static_cast<std::int32_t>(i)) continue;
+    number[i] = static_cast<std::int32_t>(out.points.size());
+    out.original.push_back(static_cast<std::int32_t>(i));
+    out.points.push_back(complex.points[i]);
+  }
+  out.welded = complex.triangles;
+  out.corners.reserve(3 * complex.triangles.size());
+  for (InterfaceTriangle& t : out.welded) {
+    for (std::int32_t& v : t.v) {
+      v = place[v];
+      out.corners.push_back(number[v]);
+    }
+  }
+  return out;
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The power of two that brings an extreme aspect (steps along z against edges in the plane) back to about 1;
+/// 1 when it is within 1/16 .. 16.
+double z_scale_for_aspect(const InterfaceComplex& complex) {
+  std::vector<double> steps, edges;
+  for (const InterfaceTriangle& t : complex.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 d = complex.points[t.v[(k + 1) % 3]] - complex.points[t.v[k]];
+      if (d.z != 0) steps.push_back(std::abs(d.z));
+      if (d.x != 0 || d.y != 0) edges.push_back(std::hypot(d.x, d.y));
+    }
+  }
+  const double step = median(steps), edge = median(edges);
+  if (step <= 0 || edge <= 0) return 1;
+  const double ratio = step / edge;
+  if (ratio <= 16 && ratio >= 1.0 / 16) return 1;
+  return std::ldexp(1.0, -static_cast<int>(std::lround(std::log2(ratio))));
+}
+
+std::string number(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.10g", v);
+  return text;
+}
+
+/// One way to call TetGen.
+struct Call {
+  bool refine = false;
+  std::string tolerance;  // "" or "T1e-10"
+  double z_scale = 1;
+};
+
+std::string describe(const Call& call, const std::string& switches) {
+  return "TetGen -" + switches + (call.z_scale == 1 ? "" : " with z scaled by " + number(call.z_scale));
+}
+
+/// What TetGen complained about, as one line; empty if it did not complain. Progress lines are left out.
+std::string complaint(const std::string& text) {
+  static const char* const signs[] = {"intersect",  "Invalid PLC", "duplicate",      "overlap",
+                                      "very close", "trivial",     "needs at least", "Assertion",
+                                      "rror:",      "bug",         "small"};
+  std::string line, out;
+  for (std::size_t at = 0; at <= text.size(); ++at) {
+    if (at < text.size() && text[at] != '\n') {
+      if (static_cast<unsigned char>(text[at]) >= ' ') line += text[at];
+      continue;
+    }
+    const bool told = std::any_of(std::begin(signs), std::end(signs),
+                                  [&](const char* s) { return line.find(s) != std::string::npos; });
+    const bool detail =
+        !out.empty() && (line.find("1st:") != std::string::npos || line.find("2nd:") != std::string::npos);
+    if ((told || detail) && out.size() < 300) {
+      line.erase(0, line.find_first_not_of(' '));
+      out += (out.empty() ? "" : "; ") + line.substr(0, 200);
+    }
+    line.clear();
+  }
+  return out;
+}
+
+class Filler {
+ public:
+  Filler(const InterfaceComplex& complex, const FillOptions& options)
+      : complex_(complex),
+        options_(options),
+        program_{options.worker_path, options.worker_args},
+        deadline_(Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(
+                                     1e6 * std::clamp(options.timeout_s, 0.0, 1e9)))) {}
+
+  FillResult run() {
+    if (complex_.triangles.empty())
+      return failure(Status::empty, "there is nothing to fill: the surface has no triangles");
+    if (std::all_of(complex_.triangles.begin(), complex_.triangles.end(),
+                    [](const InterfaceTriangle& t) { return t.below == 0 && t.above == 0; }))
+      return failure(Status::empty, "there is nothing to fill: the surface bounds no label");
+    input_ = compact(complex_);
+    volume::Finding finding = volume::check_closed({complex_.points, input_.welded});
+    if (!finding.message.empty())
+      return failure(Status::refused, finding.message, std::move(finding.triangles));
+
+    const double scale = z_scale_for_aspect(complex_);
+    const bool wants_refinement = options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3;
+    std::string before;  // what was tried and failed, for the message
+    bool refinement_pays = wants_refinement;
+    if (wants_refinement) {
+      // The plain filling must still fit in the time.
+      const auto budget = std::chrono::duration_cast<Clock::duration>((deadline_ - Clock::now()) * 0.6);
+      FillResult result = attempt({true, "", scale}, std::min(deadline_, Clock::now() + budget));
+      if (result.status == Status::verified || hopeless_) return result;
+      refinement_pays = result.status == Status::refused;
+      before = result.message;
+    }
+    Call call{false, "", scale};
+    FillResult result = attempt(call, deadline_);
+    if (result.status == Status::verified) return with_note(std::move(result), before);
+    if (hopeless_ || result.status == Status::timed_out) return result;
+
+    FillResult first = std::move(result);
+    if (search(first)) return first;
+    for (const Call& next :
+         {Call{false, "T1e-10", scale}, Call{false, "T1e-12", scale}, Call{false, "", 4 * scale},
+          Call{false, "", scale / 4}, Call{false, "T1e-12", 4 * scale}}) {
+      if (Clock::now() >= deadline_) break;
+      result = attempt(next, deadline_);
+      if (result.status != Status::verified) continue;
+      const std::string note = before.empty() ? first.message : before;
+      if (refinement_pays) {
+        FillResult refined = attempt({true, next.tolerance, next.z_scale}, deadline_);
+        if (refined.status == Status::verified) return with_note(std::move(refined), note);
+      }
+      return with_note(std::move(result), note);
+    }
+    return first;
+  }
+
+ private:
+  static FillResult failure(Status status, std::string message, std::vector<std::int32_t> triangles = {}) {
+    FillResult result;
+    result.status = status;
+    result.message = std::move(message);
+    result.offending_triangles = std::move(triangles);
+    return result;
+  }
+
+  static FillResult with_note(FillResult result, const std::string& before) {
+    if (!before.empty()) result.message += "; before that, " + before;
+    return result;
+  }
+
+  std::string switches(const Call& call) const {
+    std::string s = "p";
+    if (call.refine) {
+      // A volume bound alone refines too: TetGen's own ratio of 2, no dihedral bound.
+      s += "q" + number(options_.radius_edge.value_or(2));
+      if (options_.dihedral_deg) s += "/" + number(*options_.dihedral_deg);
+      if (options_.max_volume_mm3) s += "a" + number(*options_.max_volume_mm3 * call.z_scale);
+    }
+    return s + "Y" + call.tolerance;
+  }
+
+  Reply call_worker(const std::string& switches, double z_scale, Clock::time_point deadline) {
+    std::vector<Vec3> scaled;
+    if (z_scale != 1) {
+      scaled = input_.points;
+      for (Vec3& p : scaled) p.z *= z_scale;
+    }
+    return worker::run(program_, {switches, z_scale == 1 ? &input_.points : &scaled, &input_.corners},
+                       deadline);
+  }
+
+  FillResult attempt(const Call& call, Clock::time_point deadline) {
+    const std::string name = describe(call, switches(call));
+    const auto start = Clock::now();
+    Reply reply = call_worker(switches(call) + "Jn", call.z_scale, deadline);
+    switch (reply.kind) {
+      case Reply::Kind::not_a_worker:
+        hopeless_ = true;
+        return failure(Status::crashed, reply.text);
+      case Reply::Kind::timed_out: {
+        const double s = std::chrono::duration<double>(Clock::now() - start).count();
+        char text[32];
+        std::snprintf(text, sizeof text, "%.3g", s);
+        return failure(Status::timed_out, name + " was ended after " + text + " s");
+      }
+      case Reply::Kind::gave_up:
+      case Reply::Kind::died: {
+        const std::string why = complaint(reply.text);
+        FillResult result = why.empty() ? failure(Status::crashed, name + " died" + reason(reply))
+                                        : failure(Status::refused, name + " refused the surface: " + why);
+        result.offending_triangles = named_triangles(reply.text);
+        return result;
+      }
+      case Reply::Kind::done:
+        break;
+    }
+    if (reply.tets.empty()) return failure(Status::empty, name + " succeeded without a single tetrahedron");
+    return assemble(std::move(reply), call, name);
+  }
+
+  static std::string reason(const Reply& reply) {
+    const bool ours = reply.text.compare(0, 10, "the worker") == 0;
+    return ours ? ": " + reply.text : " without saying why";
+  }
+
+  FillResult assemble(Reply reply, const Call& call, const std::string& name) {
+    TetMesh mesh;
+    mesh.points = complex_.points;
+    mesh.faces = input_.welded;
+    const auto known = static_cast<std::int32_t>(input_.points.size());
+    const auto offset = static_cast<std::int32_t>(complex_.points.size()) - known;
+    for (Vec3 p : reply.added_points) mesh.points.push_back({p.x, p.y, p.z / call.z_scale});
+    for (std::int32_t& v : reply.tets)
+      if (v >= 0) v = v < known ? input_.original[v] : v + offset;
+    volume::Finding finding = volume::label_tets({std::move(reply.tets), std::move(reply.neighbours)}, mesh);
+    if (!finding.message.empty())
+      return failure(Status::refused, name + ": " + finding.message, std::move(finding.triangles));
+    if (mesh.tets.empty()) return failure(Status::empty, name + " left no tetrahedron of any label");
+    drop_unused(mesh);
+
+    double worst = 0;
+    const auto expected = volume::surface_volumes({mesh.points, mesh.faces});
+    const auto filled = volume::tet_volumes(mesh);
+    std::set<Label> labels;
+    for (const auto& [label, v] : expected) labels.insert(label);
+    for (const auto& [label, v] : filled) labels.insert(label);
+    for (const Label label : labels) {
+      const auto e = expected.find(label), f = filled.find(label);
+      const volume::Volume a = e == expected.end() ? volume::Volume{} : e->second;
+      const volume::Volume b = f == filled.end() ? volume::Volume{} : f->second;
+      const double larger = std::max(std::abs(a.mm3), std::abs(b.mm3));
+      const double off = std::max(0.0, std::abs(a.mm3 - b.mm3) - 1e-13 * (a.terms + b.terms));
+      if (off > 1e-6 * larger)
+        return failure(Status::volume_mismatch, name + ": label " + std::to_string(label) + " encloses " +
+                                                    number(a.mm3) + " mm3 but was filled with " +
+                                                    number(b.mm3));
+      if (larger > 0) worst = std::max(worst, off / larger);
+    }
+
+    FillResult result;
+    result.status = Status::verified;
+    const std::size_t added = mesh.points.size() - complex_.points.size();
+    result.message = name + ": " + std::to_string(mesh.tets.size()) + " tetrahedra, " +
+                     std::to_string(added) + " points added inside";
+    if (worst > 1e-9) result.message += ", volumes within " + number(worst) + " of the surface's";
+    result.mesh = std::move(mesh);
+    return result;
+  }
+
+  // Added points of no tet (they served the background only).
+  void drop_unused(TetMesh& mesh) const {
+    const std::size_t known = complex_.points.size();
+    std::vector<std::int32_t> to(mesh.points.size() - known, -1);
+    for (const auto& tet : mesh.tets)
+      for (const std::int32_t v : tet)
+        if (static_cast<std::size_t>(v) >= known) to[static_cast<std::size_t>(v) - known] = 0;
+    std::size_t count = known;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (to[i] < 0) continue;
+      to[i] = static_cast<std::int32_t>(count);
+      mesh.points[count++] = mesh.points[known + i];
+    }
+    mesh.points.resize(count);
+    for (auto& tet : mesh.tets)
+      for (std::int32_t& v : tet)
+        if (static_cast<std::size_t>(v) >= known) v = to[static_cast<std::size_t>(v) - known];
+  }
+
+  /// Asks TetGen (-d) for the triangles that intersect; true when it found some, now in `refusal`.
+  bool search(FillResult& refusal) {
+    const Reply reply = call_worker("pdJ", 1, deadline_);
+    std::set<std::int32_t> found;
+    if (reply.kind == Reply::Kind::done) {
+      const auto count = static_cast<std::int32_t>(complex_.triangles.size());
+      for (const std::int32_t i : reply.faces)
+        if (i >= 0 && i < count) found.insert(i);
+    } else {
+      const auto named = named_triangles(reply.text);
+      refusal.offending_triangles.insert(refusal.offending_triangles.end(), named.begin(), named.end());
+      std::sort(refusal.offending_triangles.begin(), refusal.offending_triangles.end());
+      refusal.offending_triangles.erase(
+          std::unique(refusal.offending_triangles.begin(), refusal.offending_triangles.end()),
+          refusal.offending_triangles.end());
+    }
+    if (found.empty()) return false;
+    refusal.status = Status::refused;
+    refusal.offending_triangles.assign(found.begin(), found.end());
+    refusal.message += "; " + std::to_string(found.size()) + " surface triangles intersect";
+    return true;
+  }
+
+  /// The triangles that TetGen names by their corners, "[a, b, c] #facet", or whose edges it names, "(a, b)".
+  std::vector<std::int32_t> named_triangles(const std::string& text) const {
+    std::set<std::set<std::int32_t>> named;
+    for (std::size_t at = 0; (at = text.find_first_of("[(", at)) != std::string::npos; ++at) {
+      int a = -1, b = -1, c = -1;
+      if (std::sscanf(text.c_str() + at + 1, "%d , %d , %d", &a, &b, &c) == 3) {
+        named.insert({a, b, c});
+      } else if (std::sscanf(text.c_str() + at + 1, "%d , %d", &a, &b) == 2) {
+        named.insert({a, b});
+      }
+    }
+    std::vector<std::int32_t> out;
+    if (named.empty()) return out;
+    for (std::size_t i = 0; 3 * i < input_.corners.size(); ++i) {
+      const std::int32_t* c = input_.corners.data() + 3 * i;
+      if (named.count({c[0], c[1], c[2]}) || named.count({c[0], c[1]}) || named.count({c[1], c[2]}) ||
+          named.count({c[2], c[0]}))
+        out.push_back(static_cast<std::int32_t>(i));
+    }
+    return out;
+  }
+
+  const InterfaceComplex& complex_;
+  const FillOptions& options_;
+  worker::Program program_;
+  Clock::time_point deadline_;
+  Compact input_;
+  bool hopeless_ = false;  // no worker to be had: trying again is no use
+};
+
+}  // namespace
+
+FillResult fill_volume(const InterfaceComplex& complex, const FillOptions& options) {
+  check_input(complex, options);
+  return Filler(complex, options).run();
+}
+
+}  // namespace stackmesh

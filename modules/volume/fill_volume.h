@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/complex.h"
+#include "model/tet_mesh.h"
+
+namespace stackmesh {
+
+/// How the complex is filled.
+struct FillOptions {
+  std::optional<double> max_volume_mm3;  ///< largest tetrahedron, mm3; unset: no bound (graded)
+  std::optional<double> radius_edge;  ///< largest circumradius / shortest edge; a target. Unset together with
+                                      ///< dihedral_deg and max_volume_mm3: no refinement
+  std::optional<double> dihedral_deg;  ///< smallest dihedral angle, degrees; a target
+  double timeout_s = 600;              ///< of all worker runs together, seconds
+  std::string worker_path;             ///< program that answers the worker call; empty: this very program
+  std::vector<std::string> worker_args = {"--tetgen-worker"};
+};
+
+/// What came of it. Only `verified` carries a mesh.
+struct FillResult {
+  enum class Status {
+    verified,        ///< filled; labels, faces, orientation and volumes were checked
+    refused,         ///< the complex is not closed, intersects itself, or TetGen gave no mesh that holds it
+    timed_out,       ///< the worker took too long and was ended
+    crashed,         ///< the worker could not be started, or died without saying why
+    empty,           ///< nothing to fill, or TetGen succeeded without a single tetrahedron
+    volume_mismatch  ///< a label's tetrahedra do not have the volume that its surface encloses
+  };
+  Status status = Status::refused;
+  std::string message;  ///< one line, for the report
+  TetMesh mesh;         ///< the complex's points come first, bit-identical; points added inside follow
+  std::vector<std::int32_t>
+      offending_triangles;  ///< indices into complex.triangles, ascending: where it was refused
+};
+
+/// Fills every label of a closed complex with tetrahedra that keep all of its triangles; the background is
+/// left out. TetGen (Si 2015) does it in a worker process with a timeout, boundary preserved (-pY). What
+/// comes back is not believed: each tet's label is flooded from the facets' (below, above), and the volumes
+/// per label compared.
+///
+/// A refinement that fails falls back to plain filling, and a refusal is tried again with smaller tolerances
+/// and other scales of z; the message says so. Points of the complex at one place count as one: tets and
+/// faces then name the first of them.
+///
+/// @param complex closed, in stack coordinates (z is the stacking axis), mm
+/// @throws Error(internal) when a triangle names a point that is not there or a coordinate is not finite,
+/// Error(usage)
+///         when an option is not positive
+FillResult fill_volume(const InterfaceComplex& complex, const FillOptions& options = {});
+
+}  // namespace stackmesh

@@ -1,0 +1,326 @@
+#include "volume/label_tets.h"
+
+#include <tetgen.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+namespace stackmesh::volume {
+namespace {
+
+using Triple = std::array<std::int32_t, 3>;
+
+Triple sorted(Triple t) {
+  if (t[0] > t[1]) std::swap(t[0], t[1]);
+  if (t[1] > t[2]) std::swap(t[1], t[2]);
+  if (t[0] > t[1]) std::swap(t[0], t[1]);
+  return t;
+}
+
+/// Triangles by their corners, in any order; open addressing.
+class TriangleTable {
+ public:
+  explicit TriangleTable(const std::vector<InterfaceTriangle>& triangles) : triangles_(triangles) {
+    while (slots_.size() < 2 * triangles.size() + 1) slots_.resize(2 * slots_.size());
+    std::fill(slots_.begin(), slots_.end(), -1);
+  }
+
+  /// Adds triangle i; false (and not added) when one with these corners is there.
+  bool insert(std::int32_t i) {
+    const std::size_t at = slot(triangles_[i].v);
+    if (slots_[at] >= 0) return false;
+    slots_[at] = i;
+    return true;
+  }
+
+  std::int32_t find(const Triple& corners) const { return slots_[slot(corners)]; }
+
+ private:
+  std::size_t slot(const Triple& corners) const {
+    const Triple key = sorted(corners);
+    std::uint64_t h = 0;
+    for (const std::int32_t v : key) {
+      h = (h ^ static_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 29;
+    }
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = h & mask;
+    while (slots_[at] >= 0 && sorted(triangles_[slots_[at]].v) != key) at = (at + 1) & mask;
+    return at;
+  }
+
+  const std::vector<InterfaceTriangle>& triangles_;
+  std::vector<std::int32_t> slots_ = std::vector<std::int32_t>(16);
+};
+
+/// The sign of det(b-a, c-a, d-a), exact.
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 p = b - a, q = c - a, r = d - a;
+  const double det = dot(cross(p, q), r);
+  const double permanent = (std::abs(p.y * q.z) + std::abs(p.z * q.y)) * std::abs(r.x) +
+                           (std::abs(p.z * q.x) + std::abs(p.x * q.z)) * std::abs(r.y) +
+                           (std::abs(p.x * q.y) + std::abs(p.y * q.x)) * std::abs(r.z);
+  const double bound = 1e-15 * permanent + 1e-300;  // Shewchuk's is 7.8e-16
+  if (det > bound) return 1;
+  if (det < -bound) return -1;
+  static std::once_flag ready;  // no static filter: what is set is the same for all inputs
+  std::call_once(ready, [] { exactinit(0, 0, 1, 1, 1, 1); });
+  std::array<std::array<double, 3>, 4> v = {
+      {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}, {d.x, d.y, d.z}}};
+  const double below = orient3d(v[0].data(), v[1].data(), v[2].data(), v[3].data());
+  return below < 0 ? 1 : below > 0 ? -1 : 0;
+}
+
+// Face i, opposite corner i, seen with that corner on the side of its normal.
+constexpr int kFace[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+
+bool same_turn(const Triple& a, const Triple& b) {
+  return (a[0] == b[0] && a[1] == b[1]) || (a[0] == b[1] && a[1] == b[2]) || (a[0] == b[2] && a[1] == b[0]);
+}
+
+constexpr Label kUnknown = INT32_MIN;
+
+std::string count_of(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+/// One run of labelling.
+class Flood {
+ public:
+  Flood(const RawTets& raw, const TetMesh& mesh)
+      : raw_(raw),
+        faces_(mesh.faces),
+        count_(raw.corners.size() / 4),
+        labels_(count_, kUnknown),
+        walls_(count_, 0) {}
+
+  Finding run() {
+    seed();
+    if (finding_.message.empty()) spread();
+    if (finding_.message.empty()) check_sides();
+    return std::move(finding_);
+  }
+  const std::vector<Label>& labels() const { return labels_; }
+
+ private:
+  Triple face(std::size_t t, int i) const {
+    const std::int32_t* c = raw_.corners.data() + 4 * t;
+    return {c[kFace[i][0]], c[kFace[i][1]], c[kFace[i][2]]};
+  }
+
+  void seed() {
+    TriangleTable table(faces_);
+    std::int32_t top = -1;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      table.insert(static_cast<std::int32_t>(i));
+      for (const std::int32_t v : faces_[i].v) top = std::max(top, v);
+    }
+    sides_.assign(faces_.size(), 0);
+    for (std::size_t t = 0; t < count_; ++t) {
+      for (int i = 0; i < 4; ++i) {
+        const Triple f = face(t, i);
+        if (f[0] > top || f[1] > top || f[2] > top) continue;
+        const std::int32_t at = table.find(f);
+        if (at < 0) continue;
+        walls_[t] = static_cast<std::uint8_t>(walls_[t] | (1 << i));
+        const InterfaceTriangle& wall = faces_[at];
+        const bool above = same_turn(f, wall.v);
+        sides_[at] = static_cast<std::uint8_t>(sides_[at] | (above ? 2 : 1));
+        give(t, above ? wall.above : wall.below, at);
+      }
+    }
+  }
+
+  void give(std::size_t t, Label label, std::int32_t wall) {
+    if (labels_[t] == kUnknown) {
+      labels_[t] = label;
+      queue_.push_back(static_cast<std::int32_t>(t));
+    } else if (labels_[t] != label && finding_.message.empty()) {
+      finding_.message =
+          "a region is labelled both " + std::to_string(labels_[t]) + " and " + std::to_string(label);
+      if (wall >= 0) finding_.triangles.push_back(wall);
+    }
+  }
+
+  void spread() {
+    for (std::size_t at = 0; at < queue_.size(); ++at) {
+      const auto t = static_cast<std::size_t>(queue_[at]);
+      for (int i = 0; i < 4; ++i) {
+        const std::int32_t next = raw_.neighbours[4 * t + static_cast<std::size_t>(i)];
+        if (walls_[t] & (1 << i)) continue;
+        if (next < 0) {
+          if (labels_[t] != 0) {
+            finding_.message =
+                "label " + std::to_string(labels_[t]) + " reaches the outside where it has no surface";
+            return;
+          }
+          continue;
+        }
+        if (!shares(static_cast<std::size_t>(next), face(t, i))) {
+          finding_.message = "TetGen's tetrahedra do not fit together";
+          return;
+        }
+        give(static_cast<std::size_t>(next), labels_[t], -1);
+        if (!finding_.message.empty()) return;
+      }
+    }
+    if (queue_.size() != count_) finding_.message = "a region is not bounded by any surface triangle";
+  }
+
+  bool shares(std::size_t t, const Triple& f) const {
+    if (t >= count_) return false;
+    const std::int32_t* c = raw_.corners.data() + 4 * t;
+    return std::all_of(f.begin(), f.end(), [&](std::int32_t v) { return std::find(c, c + 4, v) != c + 4; });
+  }
+
+  void check_sides() {
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const bool below = sides_[i] & 1, above = sides_[i] & 2;
+      if ((!below && !above) || (!below && faces_[i].below != 0) || (!above && faces_[i].above != 0))
+        finding_.triangles.push_back(static_cast<std::int32_t>(i));
+    }
+    if (!finding_.triangles.empty())
+      finding_.message =
+          count_of(finding_.triangles.size(), "surface triangle was", "surface triangles were") +
+          " not kept as faces of the tetrahedra";
+  }
+
+  const RawTets& raw_;
+  const std::vector<InterfaceTriangle>& faces_;
+  std::size_t count_;
+  std::vector<Label> labels_;
+  std::vector<std::uint8_t> walls_,
+      sides_;  // bits: tet faces that lie on a triangle; triangle sides that were met
+  std::vector<std::int32_t> queue_;
+  Finding finding_;
+};
+
+void add(Volume& volume, double term) {
+  volume.mm3 += term;
+  volume.terms += std::abs(term);
+}
+
+}  // namespace
+
+Finding check_closed(const InterfaceComplex& complex) {
+  Finding finding;
+  TriangleTable table(complex.triangles);
+  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
+    const Triple& v = complex.triangles[i].v;
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+      finding.triangles.push_back(static_cast<std::int32_t>(i));
+    } else if (!table.insert(static_cast<std::int32_t>(i))) {
+      finding.triangles.push_back(table.find(v));
+      finding.triangles.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  if (!finding.triangles.empty()) {
+    finding.message = "the surface has triangles that are degenerate or repeated";
+  } else {
+    struct Edge {
+      std::uint64_t key;
+      std::int32_t triangle;
+      bool forward;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(3 * complex.triangles.size());
+    for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto a = static_cast<std::uint64_t>(complex.triangles[i].v[k]);
+        const auto b = static_cast<std::uint64_t>(complex.triangles[i].v[(k + 1) % 3]);
+        edges.push_back({std::min(a, b) << 32 | std::max(a, b), static_cast<std::int32_t>(i), a < b});
+      }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.key < b.key; });
+    std::size_t open = 0;
+    std::vector<std::pair<Label, int>> around;
+    for (std::size_t from = 0, to = 0; from < edges.size(); from = to) {
+      around.clear();
+      for (; to < edges.size() && edges[to].key == edges[from].key; ++to) {
+        const InterfaceTriangle& t = complex.triangles[edges[to].triangle];
+        const int sign = edges[to].forward ? 1 : -1;
+        around.emplace_back(t.below, sign);
+        around.emplace_back(t.above, -sign);
+      }
+      std::sort(around.begin(), around.end());
+      bool closed = true;
+      for (std::size_t i = 0, j = 0; i < around.size(); i = j) {
+        int sum = 0;
+        for (; j < around.size() && around[j].first == around[i].first; ++j) sum += around[j].second;
+        closed = closed && sum == 0;
+      }
+      if (closed) continue;
+      ++open;
+      for (std::size_t i = from; i < to; ++i) finding.triangles.push_back(edges[i].triangle);
+    }
+    if (open > 0) finding.message = "the surface is open along " + count_of(open, "edge", "edges");
+  }
+  std::sort(finding.triangles.begin(), finding.triangles.end());
+  finding.triangles.erase(std::unique(finding.triangles.begin(), finding.triangles.end()),
+                          finding.triangles.end());
+  return finding;
+}
+
+Finding label_tets(RawTets raw, TetMesh& mesh) {
+  const std::size_t count = raw.corners.size() / 4;
+  const auto points = static_cast<std::int32_t>(mesh.points.size());
+  std::size_t flat = 0;
+  int turned = 0;  // TetGen orients all tets alike: which way, the first one says
+  for (std::size_t t = 0; t < count; ++t) {
+    std::int32_t* c = raw.corners.data() + 4 * t;
+    if (std::any_of(c, c + 4, [&](std::int32_t v) { return v < 0 || v >= points; }))
+      return {"TetGen's answer names points that do not exist", {}};
+    const int sign = orientation(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]], mesh.points[c[3]]);
+    if (turned == 0) turned = sign;
+    if (sign == 0 || sign != turned) ++flat;
+    if (turned < 0) {
+      std::swap(c[0], c[1]);
+      std::swap(raw.neighbours[4 * t], raw.neighbours[4 * t + 1]);
+    }
+  }
+  if (flat > 0) return {count_of(flat, "tetrahedron is", "tetrahedra are") + " flat or inverted", {}};
+
+  Flood flood(raw, mesh);
+  Finding finding = flood.run();
+  if (!finding.message.empty()) return finding;
+  mesh.tets.clear();
+  mesh.labels.clear();
+  for (std::size_t t = 0; t < count; ++t) {
+    if (flood.labels()[t] == 0) continue;
+    const std::int32_t* c = raw.corners.data() + 4 * t;
+    mesh.tets.push_back({c[0], c[1], c[2], c[3]});
+    mesh.labels.push_back(flood.labels()[t]);
+  }
+  return {};
+}
+
+std::map<Label, Volume> surface_volumes(const InterfaceComplex& complex) {
+  std::map<Label, Volume> volumes;
+  if (complex.triangles.empty()) return volumes;
+  const Vec3 origin = complex.points[complex.triangles.front().v[0]];
+  for (const InterfaceTriangle& t : complex.triangles) {
+    if (t.below == t.above) continue;
+    const Vec3 a = complex.points[t.v[0]] - origin, b = complex.points[t.v[1]] - origin,
+               c = complex.points[t.v[2]] - origin;
+    const double term = dot(cross(a, b), c) / 6;
+    if (t.below != 0) add(volumes[t.below], term);
+    if (t.above != 0) add(volumes[t.above], -term);
+  }
+  return volumes;
+}
+
+std::map<Label, Volume> tet_volumes(const TetMesh& mesh) {
+  std::map<Label, Volume> volumes;
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+    const auto& t = mesh.tets[i];
+    const Vec3 a = mesh.points[t[0]];
+    add(volumes[mesh.labels[i]],
+        dot(cross(mesh.points[t[1]] - a, mesh.points[t[2]] - a), mesh.points[t[3]] - a) / 6);
+  }
+  return volumes;
+}
+
+}  // namespace stackmesh::volume

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "model/complex.h"
+#include "model/tet_mesh.h"
+
+namespace stackmesh::volume {
+
+/// What the checks below found; `message` is empty when all is well.
+struct Finding {
+  std::string message;
+  std::vector<std::int32_t> triangles;  // ascending, without repeats
+};
+
+/// Is every label's surface closed, and no triangle degenerate or repeated?
+Finding check_closed(const InterfaceComplex& complex);
+
+/// Tets as TetGen gives them: any one orientation, neighbours opposite the corners (-1 outside).
+struct RawTets {
+  std::vector<std::int32_t> corners, neighbours;  // four a tet
+};
+
+/// Fills mesh.tets and mesh.labels from `raw`, whose corners index mesh.points. Every tet must be positive
+/// (exactly), every face of mesh.faces must be a face of the tets, and the labels flooded from the faces must
+/// agree. Tets of the background are dropped.
+Finding label_tets(RawTets raw, TetMesh& mesh);
+
+struct Volume {
+  double mm3 = 0;
+  double terms = 0;  // sum of the magnitudes that were added: the scale of its rounding
+};
+
+/// The volume that each label's surface encloses (background left out).
+std::map<Label, Volume> surface_volumes(const InterfaceComplex& complex);
+/// The volume of each label's tets.
+std::map<Label, Volume> tet_volumes(const TetMesh& mesh);
+
+}  // namespace stackmesh::volume

@@ -1,0 +1,8 @@
+# A closed complex to tetrahedra. TetGen (AGPL) stays in here, and runs in a worker process only.
+stackmesh_module(volume
+  SOURCES fill_volume.cpp label_tets.cpp tetgen_worker.cpp worker_process.cpp
+  HEADERS fill_volume.h tetgen_worker.h
+  USES base model
+  PRIVATE ${TETGEN_LIBRARY})
+target_include_directories(stackmesh_volume PRIVATE ${TETGEN_INCLUDE})
+target_compile_definitions(stackmesh_volume PRIVATE TETLIBRARY)

@@ -1,0 +1,42 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/geometry.h"
+
+namespace stackmesh::worker {
+
+using Clock = std::chrono::steady_clock;
+
+struct Program {
+  std::string path;  // empty: this very program
+  std::vector<std::string> args;
+};
+
+struct Request {
+  std::string switches;
+  const std::vector<Vec3>* points = nullptr;
+  const std::vector<std::int32_t>* corners = nullptr;  // three a triangle
+};
+
+struct Reply {
+  enum class Kind {
+    done,         // the arrays are TetGen's answer
+    gave_up,      // TetGen said no; `text` is what it said
+    died,         // the worker crashed in TetGen or was killed; `text` says how
+    timed_out,    // and was killed by us
+    not_a_worker  // it could not be started, or does not speak our language
+  };
+  Kind kind = Kind::died;
+  std::string text;  // not yet one line
+  std::vector<Vec3> added_points;
+  std::vector<std::int32_t> tets, neighbours, faces;
+};
+
+/// Starts the worker, sends the request, and waits for its answer until the deadline. The worker is gone and
+/// reaped when this returns.
+Reply run(const Program& program, const Request& request, Clock::time_point deadline);
+
+}  // namespace stackmesh::worker

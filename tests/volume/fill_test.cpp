@@ -1,0 +1,229 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "base/error.h"
+#include "shapes.h"
+#include "volume/fill_volume.h"
+
+namespace stackmesh {
+namespace {
+
+using Status = FillResult::Status;
+
+FillResult expect_verified(const InterfaceComplex& complex, const FillOptions& options = {}) {
+  FillResult result = fill_volume(complex, options);
+  EXPECT_EQ(result.status, Status::verified) << result.message;
+  EXPECT_EQ(result.message.find('\n'), std::string::npos);
+  if (result.status == Status::verified) shapes::expect_fills(result.mesh, complex);
+  return result;
+}
+
+InterfaceComplex cube() {
+  return shapes::voxels(1, 1, 1, {1, 1, 1}, [](int, int, int) { return 7; });
+}
+
+TEST(FillVolume, CubeIsFilledExactly) {
+  const FillResult r = expect_verified(cube());
+  const auto v = shapes::volumes(r.mesh);
+  ASSERT_EQ(v.size(), 1u);
+  EXPECT_NEAR(v.at(7), 1, 1e-15);
+  EXPECT_TRUE(r.offending_triangles.empty());
+}
+
+TEST(FillVolume, TwoCubesShareTheirFace) {
+  const auto complex = shapes::voxels(2, 1, 1, {1, 1, 1}, [](int i, int, int) { return i == 0 ? 3 : 9; });
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  ASSERT_EQ(v.size(), 2u);
+  EXPECT_DOUBLE_EQ(v.at(3), 1);
+  EXPECT_DOUBLE_EQ(v.at(9), 1);
+}
+
+TEST(FillVolume, LabelsMayBeNegativeOrLarge) {
+  const auto complex =
+      shapes::voxels(2, 1, 1, {1, 1, 1}, [](int i, int, int) { return i == 0 ? -5 : 2000000000; });
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  EXPECT_DOUBLE_EQ(v.at(-5), 1);
+  EXPECT_DOUBLE_EQ(v.at(2000000000), 1);
+}
+
+TEST(FillVolume, CavityStaysEmpty) {
+  const auto complex = shapes::voxels(3, 3, 3, {1, 1, 1},
+                                      [](int i, int j, int k) { return i == 1 && j == 1 && k == 1 ? 0 : 4; });
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  ASSERT_EQ(v.size(), 1u);
+  EXPECT_NEAR(v.at(4), 26, 1e-12);
+}
+
+TEST(FillVolume, NestedShellsKeepTheirLabels) {
+  InterfaceComplex complex;
+  shapes::add_box(complex, {0, 0, 0}, {10, 10, 10}, 1);
+  shapes::add_box(complex, {1, 1, 1}, {9, 9, 9}, 2, 1);
+  shapes::add_box(complex, {2, 2, 2}, {8, 8, 8}, 0, 2);
+  shapes::add_box(complex, {4, 4, 4}, {6, 6, 6}, 3, 0);
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  ASSERT_EQ(v.size(), 3u);
+  EXPECT_NEAR(v.at(1), 1000 - 512, 1e-9);
+  EXPECT_NEAR(v.at(2), 512 - 216, 1e-9);
+  EXPECT_NEAR(v.at(3), 8, 1e-9);
+}
+
+TEST(FillVolume, OrientationOfATriangleDoesNotMatter) {
+  auto complex = shapes::voxels(2, 1, 1, {1, 1, 1}, [](int i, int, int) { return i + 1; });
+  for (std::size_t i = 0; i < complex.triangles.size(); i += 2) {
+    std::swap(complex.triangles[i].v[0], complex.triangles[i].v[1]);
+    std::swap(complex.triangles[i].below, complex.triangles[i].above);
+  }
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  EXPECT_DOUBLE_EQ(v.at(1), 1);
+  EXPECT_DOUBLE_EQ(v.at(2), 1);
+}
+
+TEST(FillVolume, LShapeDoesNotFillItsNotch) {
+  const auto complex = shapes::voxels(2, 2, 1, {1, 1, 1}, [](int i, int j, int) { return i && j ? 0 : 1; });
+  EXPECT_NEAR(shapes::volumes(expect_verified(complex).mesh).at(1), 3, 1e-12);
+}
+
+TEST(FillVolume, SurfaceBetweenEqualLabelsIsKept) {
+  const auto complex = shapes::voxels(2, 1, 1, {1, 1, 1}, [](int i, int, int) { return i + 1; });
+  auto same = complex;
+  for (auto& t : same.triangles)
+    for (Label* l : {&t.below, &t.above})
+      if (*l == 2) *l = 1;
+  const auto v = shapes::volumes(expect_verified(same).mesh);
+  EXPECT_DOUBLE_EQ(v.at(1), 2);
+}
+
+TEST(FillVolume, LabelsThatTouchAlongAnEdgeOnly) {
+  const auto complex =
+      shapes::voxels(2, 2, 1, {1, 1, 1}, [](int i, int j, int) { return i == j ? i + 1 : 0; });
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  EXPECT_NEAR(v.at(1), 1, 1e-12);
+  EXPECT_NEAR(v.at(2), 1, 1e-12);
+}
+
+TEST(FillVolume, LabelsThatTouchAtAVertexOnly) {
+  const auto complex =
+      shapes::voxels(2, 2, 2, {1, 1, 1}, [](int i, int j, int k) { return i == j && j == k ? i + 1 : 0; });
+  const auto v = shapes::volumes(expect_verified(complex).mesh);
+  EXPECT_NEAR(v.at(1), 1, 1e-12);
+  EXPECT_NEAR(v.at(2), 1, 1e-12);
+}
+
+TEST(FillVolume, PointsAtOnePlaceCountAsOne) {
+  InterfaceComplex complex;  // two boxes that touch at a corner, each with its own copy of it
+  shapes::add_box(complex, {0, 0, 0}, {1, 1, 1}, 1);
+  shapes::add_box(complex, {1, 1, 1}, {2, 2, 2}, 2);
+  const FillResult r = fill_volume(complex, {});
+  ASSERT_EQ(r.status, Status::verified) << r.message;
+  EXPECT_EQ(r.mesh.points.size(), complex.points.size());
+  EXPECT_NEAR(shapes::volumes(r.mesh).at(2), 1, 1e-12);
+  for (const auto& f : r.mesh.faces)
+    for (const int v : f.v) EXPECT_NE(v, 8);
+}
+
+TEST(FillVolume, UnusedPointsStayWhereTheyAre) {
+  auto complex = cube();
+  complex.points.insert(complex.points.begin(), Vec3{100, 100, 100});
+  for (auto& t : complex.triangles)
+    for (auto& v : t.v) ++v;
+  complex.points.push_back({0.5, 0.5, 0.5});
+  const FillResult r = expect_verified(complex);
+  for (const auto& t : r.mesh.tets)
+    for (const int v : t) EXPECT_TRUE(v != 0 && v != 9);
+}
+
+// A ball of random labels: many junctions, edges and corners that only touch.
+InterfaceComplex noisy_ball(int n, int labels, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Label> l(static_cast<std::size_t>(n) * n * n);
+  for (auto& x : l) x = static_cast<Label>(random() % static_cast<unsigned>(labels));
+  const double c = (n - 1) / 2.0;
+  return shapes::voxels(n, n, n, {0.7, 0.7, 1.3}, [&](int i, int j, int k) {
+    const double r = (i - c) * (i - c) + (j - c) * (j - c) + (k - c) * (k - c);
+    return r > n * n / 4.0 ? 0 : l[(static_cast<std::size_t>(k) * n + j) * n + i];
+  });
+}
+
+TEST(FillVolume, RandomLabelBallsAreAccepted) {
+  for (const int n : {2, 3, 5, 8, 13}) {
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      const auto complex = noisy_ball(n, 4, seed);
+      if (complex.triangles.empty()) continue;
+      SCOPED_TRACE("n " + std::to_string(n) + " seed " + std::to_string(seed));
+      expect_verified(complex);
+    }
+  }
+}
+
+TEST(FillVolume, IsDeterministic) {
+  const auto complex = noisy_ball(9, 5, 42);
+  FillOptions options;
+  options.radius_edge = 1.4;
+  options.dihedral_deg = 12;
+  const FillResult a = fill_volume(complex, options), b = fill_volume(complex, options);
+  ASSERT_EQ(a.status, Status::verified) << a.message;
+  EXPECT_EQ(a.mesh.tets, b.mesh.tets);
+  EXPECT_EQ(a.mesh.labels, b.mesh.labels);
+  EXPECT_EQ(a.message, b.message);
+}
+
+TEST(FillVolume, ManyPiecesAreAllFilled) {
+  const auto complex = shapes::voxels(15, 15, 15, {1, 1, 1}, [](int i, int j, int k) {
+    return i % 2 || j % 2 || k % 2 ? 0 : 1 + (i + j + k) / 2 % 5;
+  });
+  double sum = 0;
+  for (const auto& [label, v] : shapes::volumes(expect_verified(complex).mesh)) sum += v;
+  EXPECT_NEAR(sum, 512, 1e-9);
+}
+
+TEST(FillVolume, ExtremeAspectsAreFilled) {
+  for (const double z : {50.0, 0.02, 1000.0, 0.001}) {
+    SCOPED_TRACE(z);
+    auto complex = noisy_ball(7, 3, 5);
+    for (Vec3& p : complex.points) p.z *= z / 1.3;
+    const FillResult r = expect_verified(complex);
+    EXPECT_NE(r.message.find("z scaled"), std::string::npos) << r.message;
+  }
+}
+
+TEST(FillVolume, VolumeBoundHoldsInMillimetres) {
+  auto complex = shapes::voxels(4, 4, 4, {1, 1, 1}, [](int, int, int) { return 1; });
+  FillOptions options;
+  options.max_volume_mm3 = 0.05;
+  const FillResult r = expect_verified(complex, options);
+  EXPECT_GE(r.mesh.tets.size(), 64 / 0.05);
+  std::size_t above = 0;
+  for (const auto& t : r.mesh.tets) {
+    const Vec3 a = r.mesh.points[t[0]];
+    above += dot(r.mesh.points[t[1]] - a, cross(r.mesh.points[t[2]] - a, r.mesh.points[t[3]] - a)) / 6 > 0.05;
+  }
+  EXPECT_LT(above, r.mesh.tets.size() / 10);  // only where the surface, which is kept, asks for larger ones
+}
+
+TEST(FillVolume, VolumeBoundCountsInMillimetresWhenZIsScaled) {
+  auto complex = shapes::voxels(4, 4, 4, {1, 1, 64}, [](int, int, int) { return 1; });
+  FillOptions options;
+  options.max_volume_mm3 = 64 * 0.05;
+  const FillResult r = expect_verified(complex, options);
+  EXPECT_NE(r.message.find("z scaled"), std::string::npos) << r.message;
+  EXPECT_GT(r.mesh.tets.size(), 64 / 0.05);
+  EXPECT_LT(r.mesh.tets.size(), 64 / 0.05 * 10);
+}
+
+TEST(FillVolume, QualityRefinesAndKeepsTheSurface) {
+  auto complex = shapes::voxels(6, 6, 6, {1, 1, 1}, [](int i, int, int) { return i < 3 ? 1 : 2; });
+  FillOptions options;
+  options.radius_edge = 1.4;
+  options.dihedral_deg = 12;
+  const FillResult plain = expect_verified(complex), fine = expect_verified(complex, options);
+  EXPECT_GT(fine.mesh.points.size(), plain.mesh.points.size());
+  EXPECT_NE(fine.message.find("q1.4/12"), std::string::npos) << fine.message;
+  EXPECT_EQ(fine.message.find("before that"), std::string::npos) << fine.message;
+}
+
+}  // namespace
+}  // namespace stackmesh
