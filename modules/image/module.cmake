@@ -1,0 +1,19 @@
+# Labels and contours from files: NIfTI, NRRD, MetaImage, GIPL (ITK), PNG/TIFF slices (OpenCV), masks, .cnt.
+find_package(ITK 5 REQUIRED COMPONENTS
+  ITKCommon ITKIOImageBase ITKNIFTI ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGIPL)
+find_package(ZLIB REQUIRED)
+# Targets that a package imports are known in this folder only; what links to us from elsewhere needs them too.
+get_property(image_imported DIRECTORY PROPERTY IMPORTED_TARGETS)
+foreach(target IN LISTS image_imported)
+  get_target_property(image_global ${target} IMPORTED_GLOBAL)
+  if(NOT image_global)
+    set_target_properties(${target} PROPERTIES IMPORTED_GLOBAL TRUE)
+  endif()
+endforeach()
+stackmesh_module(image
+  SOURCES read_labels.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp masks.cpp
+          palette.cpp file_names.cpp
+  HEADERS read_labels.h read_contours.h
+  USES base model
+  PRIVATE ${ITK_LIBRARIES} opencv_core opencv_imgcodecs ZLIB::ZLIB)
+target_include_directories(stackmesh_image SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})

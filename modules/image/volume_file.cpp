@@ -1,0 +1,254 @@
+#include "image/volume_file.h"
+
+#include <itkGiplImageIO.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+#include <nifti1_io.h>
+
+#include <cmath>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "image/deflate_check.h"
+#include "image/palette.h"
+#include "image/volume_header.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr const char* again = "copy or export the file again";
+
+/// ITK's readers write to std::cerr; while one of these lives they do not. One reader at a time.
+class Quiet {
+ public:
+  Quiet() : lock_(mutex()), saved_(std::cerr.rdbuf(sink_.rdbuf())) {
+    itk::Object::GlobalWarningDisplayOff();
+    nifti_set_debug_level(0);
+  }
+  ~Quiet() { std::cerr.rdbuf(saved_); }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  std::lock_guard<std::mutex> lock_;
+  std::ostringstream sink_;
+  std::streambuf* saved_;
+};
+
+itk::ImageIOBase::Pointer make_reader(FileFormat format) {
+  switch (format) {
+    case FileFormat::nifti:
+      return itk::NiftiImageIO::New().GetPointer();
+    case FileFormat::nrrd:
+      return itk::NrrdImageIO::New().GetPointer();
+    case FileFormat::gipl:
+      return itk::GiplImageIO::New().GetPointer();
+    default:
+      return itk::MetaImageIO::New().GetPointer();
+  }
+}
+
+const char* kind_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::nifti:
+      return "nifti";
+    case FileFormat::nrrd:
+      return "nrrd";
+    case FileFormat::gipl:
+      return "gipl";
+    default:
+      return "metaimage";
+  }
+}
+
+/// The nearest orthonormal axes to nearly orthonormal ones (headers carry rounded cosines).
+/// @throws Error(input) where they are off by more than 1e-4.
+std::array<Vec3, 3> orthonormal(std::array<Vec3, 3> a, const std::string& path) {
+  double worst = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const double error = std::abs(dot(a[i], a[j]) - (i == j ? 1 : 0));
+      worst = error <= worst ? worst : error;  // keeps a NaN
+    }
+  if (!(worst <= 2e-4))
+    fail_input("the voxel grid is sheared: its directions are not at right angles or not of unit length",
+               path, "resample the labels to a rectangular grid with nearest neighbour");
+  for (int pass = 0; worst > 1e-15 && pass < 3; ++pass) {
+    // One step of the polar decomposition treats all axes alike: A <- A (3 I - A^T A) / 2.
+    const std::array<Vec3, 3> b = a;
+    for (int i = 0; i < 3; ++i) {
+      a[i] = 1.5 * b[i];
+      for (int j = 0; j < 3; ++j) a[i] = a[i] - 0.5 * dot(b[j], b[i]) * b[j];
+    }
+  }
+  for (Vec3& v : a) v = v + Vec3{0, 0, 0};  // -0 becomes 0
+  return a;
+}
+
+void take_grid(const itk::ImageIOBase& io, LabelVolume& volume, const std::string& path) {
+  const unsigned dims = io.GetNumberOfDimensions();
+  if (dims < 2) fail_input("the image has one dimension only", path, "give a three-dimensional label volume");
+  double origin[3] = {0, 0, 0};
+  std::array<std::array<double, 3>, 3> axis = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  volume.size = {1, 1, 1};
+  for (unsigned d = 0; d < dims; ++d) {
+    const std::uint64_t n = io.GetDimensions(d);
+    if (d >= 3) {
+      if (n > 1)
+        fail_input("the image has more than three dimensions", path,
+                   "give one three-dimensional label volume");
+      continue;
+    }
+    if (n < 1 || n > 2147483647u)
+      fail_input("the image has a dimension of " + std::to_string(n), path, again);
+    volume.size[d] = static_cast<int>(n);
+    volume.spacing_mm[d] = io.GetSpacing(d);
+    origin[d] = io.GetOrigin(d) + 0.0;  // -0 becomes 0
+    const std::vector<double> direction = io.GetDirection(d);
+    for (unsigned c = 0; c < 3; ++c) axis[d][c] = c < direction.size() ? direction[c] : 0;
+  }
+  if (io.GetNumberOfComponents() != 1)
+    fail_input("the image has several values a voxel (colour or vectors)", path, "give one label volume");
+  require_spacing(volume.spacing_mm.data(), 3, path);
+  volume.origin_mm = {origin[0], origin[1], origin[2]};
+  if (!std::isfinite(norm(volume.origin_mm))) fail_input("the origin is not finite", path, again);
+  for (int d = 0; d < 3; ++d) volume.axes[d] = {axis[d][0], axis[d][1], axis[d][2]};
+  volume.axes = orthonormal(volume.axes, path);
+}
+
+using Type = itk::IOComponentEnum;
+
+/// Reads and converts the voxels. Values of one or two bytes are read straight into the result's own memory.
+template <class T>
+void read_as(itk::ImageIOBase& io, const Palette::Where& where, Palette& palette, LabelVolume& volume,
+             const std::function<void(void*)>& read) {
+  const std::size_t count = static_cast<std::size_t>(volume.size[0]) * volume.size[1] * volume.size[2];
+  if (io.GetComponentSize() != sizeof(T)) fail_internal("unexpected voxel size", "image module");
+  if constexpr (sizeof(T) <= 2) {
+    volume.voxels.resize(count);
+    char* memory = reinterpret_cast<char*>(volume.voxels.data());
+    T* raw = reinterpret_cast<T*>(memory + count * (2 - sizeof(T)));
+    read(raw);
+    palette.convert(raw, volume.voxels.data(), count, where);
+  } else {
+    const std::unique_ptr<T[]> raw(new T[count]);
+    read(raw.get());
+    volume.voxels.resize(count);
+    palette.convert(raw.get(), volume.voxels.data(), count, where);
+  }
+}
+
+void read_voxels(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts,
+                 LabelVolume& volume) {
+  const Palette::Where where = [&](std::size_t i) {
+    const std::size_t x = i % volume.size[0], y = i / volume.size[0] % volume.size[1];
+    const std::size_t z = i / volume.size[0] / volume.size[1];
+    return std::pair<std::string, std::string>(
+        path, "voxel (" + std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) + ")");
+  };
+  const auto read = [&](void* memory) {
+    std::string damage;
+    std::exception_ptr failure;
+    // ITK overlooks broken check sums and short streams, so the stream is checked beside the reading.
+    parallel_for(facts.compressed ? 2 : 1, 0, [&](std::size_t task) {
+      if (task == 1) {
+        damage = check_deflate(facts.data_path, facts.data_offset, facts.needed_bytes);
+        return;
+      }
+      try {
+        io.Read(memory);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    });
+    if (!damage.empty()) fail_input("cannot read the voxels: " + damage, path, again);
+    if (failure) std::rethrow_exception(failure);
+  };
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned d = 0; d < io.GetNumberOfDimensions(); ++d) region.SetSize(d, io.GetDimensions(d));
+  io.SetIORegion(region);
+
+  Palette palette;
+  switch (io.GetComponentType()) {
+    case Type::UCHAR:
+      read_as<unsigned char>(io, where, palette, volume, read);
+      break;
+    case Type::CHAR:
+      read_as<signed char>(io, where, palette, volume, read);
+      break;
+    case Type::USHORT:
+      read_as<unsigned short>(io, where, palette, volume, read);
+      break;
+    case Type::SHORT:
+      read_as<short>(io, where, palette, volume, read);
+      break;
+    case Type::UINT:
+      read_as<unsigned int>(io, where, palette, volume, read);
+      break;
+    case Type::INT:
+      read_as<int>(io, where, palette, volume, read);
+      break;
+    case Type::ULONG:
+      read_as<unsigned long>(io, where, palette, volume, read);
+      break;
+    case Type::LONG:
+      read_as<long>(io, where, palette, volume, read);
+      break;
+    case Type::ULONGLONG:
+      read_as<unsigned long long>(io, where, palette, volume, read);
+      break;
+    case Type::LONGLONG:
+      read_as<long long>(io, where, palette, volume, read);
+      break;
+    case Type::FLOAT:
+      read_as<float>(io, where, palette, volume, read);
+      break;
+    case Type::DOUBLE:
+      read_as<double>(io, where, palette, volume, read);
+      break;
+    default:
+      fail_input("its voxel type is not read", path, "store the labels as whole numbers");
+  }
+  palette.finish(volume);
+}
+
+}  // namespace
+
+LabelVolume read_volume_file(const std::string& path, FileFormat format) {
+  const HeaderFacts facts = check_volume_header(path, format);
+  LabelVolume volume;
+  volume.kind = kind_of(format);
+  volume.warnings = facts.warnings;
+  try {
+    const Quiet quiet;
+    const itk::ImageIOBase::Pointer io = make_reader(format);
+    io->SetFileName(path);
+    io->ReadImageInformation();
+    take_grid(*io, volume, path);
+    read_voxels(*io, path, facts, volume);
+  } catch (const Error&) {
+    throw;
+  } catch (const itk::ExceptionObject& e) {
+    fail_input(std::string("the file is damaged or truncated (") + e.GetDescription() + ")", path, again);
+  } catch (const std::bad_alloc&) {
+    fail_input("the image does not fit into memory", path,
+               "crop it, or store it as 8- or 16-bit whole numbers");
+  } catch (const std::exception& e) {
+    fail_input(std::string("the file cannot be read (") + e.what() + ")", path, again);
+  }
+  for (LabelInfo& label : volume.labels) {
+    const auto name = facts.names.find(label.number);
+    if (name != facts.names.end()) label.name = name->second;
+  }
+  return volume;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "image/file_names.h"
+#include "model/geometry.h"
+
+namespace stackmesh {
+
+/// What the raw header of a volume file says that ITK would mend in silence or not tell.
+struct HeaderFacts {
+  std::vector<std::string> warnings;
+  std::map<Label, std::string> names;  ///< label names that the file holds (segmentation NRRD)
+  bool compressed = false;             ///< the voxels are a gzip or zlib stream ...
+  std::string data_path;               ///< ... of this file
+  std::uint64_t data_offset = 0;       ///< ... beginning here
+  std::uint64_t needed_bytes = 0;      ///< ... which must yield at least this much
+};
+
+/// Checks the header of a volume file before ITK sees it: sizes, spacing, directions, completeness.
+/// @throws Error(input)
+HeaderFacts check_volume_header(const std::string& path, FileFormat format);
+
+/// @throws Error(input) unless all three spacings are finite and positive.
+void require_spacing(const double* spacing, std::size_t count, const std::string& path);
+
+}  // namespace stackmesh
