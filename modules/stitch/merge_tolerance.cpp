@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "stitch/edge_grid.h"
+#include "model/edge_grid.h"
 
 namespace stackmesh {
 namespace {

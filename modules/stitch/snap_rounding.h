@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/stack.h"
-#include "stitch/edge_grid.h"
+#include "model/edge_grid.h"
 
 namespace stackmesh {
 

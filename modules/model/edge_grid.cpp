@@ -1,4 +1,4 @@
-#include "stitch/edge_grid.h"
+#include "model/edge_grid.h"
 
 #include <algorithm>
 #include <cmath>
