@@ -15,8 +15,10 @@ class AtomicFiles {
   AtomicFiles& operator=(const AtomicFiles&) = delete;
   ~AtomicFiles();
 
-  /// Writes one file: `write` gets a stdio stream open for binary writing.
-  /// @throws Error(output) naming the path when it cannot be created or written (no folder, no right, disk full).
+  /// Writes one file: `write` gets a stdio stream open for binary writing; it need not check its writes. When it
+  /// throws or a write fails, nothing of this file stays, and those written before can still be committed.
+  /// @throws Error(output) naming the path when it cannot be created or written (no folder, no right, disk full,
+  /// a folder or device of that name).
   void write(const std::string& path, const std::function<void(std::FILE*)>& write);
 
   /// Renames everything written so far to its final name. @throws Error(output)

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdio>
+
+#include "meshio/prepared_mesh.h"
+
+// One function a format; each writes to a stream that AtomicFiles checks.
+namespace stackmesh {
+
+void write_stl(std::FILE* file, const PreparedMesh& mesh);
+void write_ply(std::FILE* file, const PreparedMesh& mesh);
+void write_obj(std::FILE* file, const PreparedMesh& mesh);
+void write_off(std::FILE* file, const PreparedMesh& mesh);
+void write_vtp(std::FILE* file, const PreparedMesh& mesh);
+
+void write_vtu(std::FILE* file, const PreparedMesh& mesh);
+void write_vtk(std::FILE* file, const PreparedMesh& mesh);
+void write_msh4(std::FILE* file, const PreparedMesh& mesh);
+void write_msh2(std::FILE* file, const PreparedMesh& mesh);
+void write_inp(std::FILE* file, const PreparedMesh& mesh);
+void write_medit(std::FILE* file, const PreparedMesh& mesh);
+
+}  // namespace stackmesh

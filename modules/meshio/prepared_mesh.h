@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "meshio/write_mesh.h"
+
+namespace stackmesh {
+
+/// Tets of one label: [begin, end) of PreparedMesh::tets.
+struct LabelGroup {
+  Label label = 0;
+  std::size_t begin = 0, end = 0;
+  std::string name;  ///< unique in the mesh
+};
+
+/// Triangles of one pair of labels: [begin, end) of PreparedMesh::triangles.
+struct PairGroup {
+  Label below = 0, above = 0;
+  std::size_t begin = 0, end = 0;
+  std::string name;  ///< "femur|background"
+};
+
+/// What every format writer gets: indices and coordinates checked, no unused points, triangles oriented as
+/// write_mesh.h says and grouped by pair, tets grouped by label.
+struct PreparedMesh {
+  std::vector<Vec3> points;
+  std::vector<InterfaceTriangle> triangles;
+  std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<PairGroup> pairs;    ///< ascending (below, above)
+  std::vector<LabelGroup> labels;  ///< ascending; empty for a surface
+  std::string space;               ///< "LPS", "RAS" or ""
+
+  /// "SPACE=LPS", or "SPACE=" of nothing: empty.
+  std::string space_mark() const { return space.empty() ? "" : "SPACE=" + space; }
+};
+
+PreparedMesh prepare_surface(const InterfaceComplex& surface, const MeshWriteOptions& options,
+                             const std::string& path);
+/// The closed surface of one label, normals out of it.
+PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
+                                   const MeshWriteOptions& options, const std::string& path);
+PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path);
+
+/// Makes names distinct, whatever their letter case, within a length.
+class UniqueNames {
+ public:
+  explicit UniqueNames(std::size_t max_length) : max_length_(max_length) {}
+  std::string add(std::string name);
+
+ private:
+  std::size_t max_length_;
+  std::set<std::string> taken_;
+};
+
+/// `name` with everything but letters, digits and '_' replaced by '_', beginning with a letter.
+std::string deck_name(const std::string& name);
+
+}  // namespace stackmesh

@@ -1,0 +1,192 @@
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "meshio/formats.h"
+#include "meshio/output_buffer.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr std::int32_t kTriangle = 5, kTet = 10;  // VTK's cell types
+
+/// A VTK XML file whose arrays follow the header as raw bytes.
+class XmlFile {
+ public:
+  explicit XmlFile(const std::string& type) : type_(type) {
+    text_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
+            "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<" + type + ">\n";
+  }
+
+  XmlFile& operator<<(const std::string& text) {
+    text_ += text;
+    return *this;
+  }
+
+  /// The array must live until finish().
+  template <class T>
+  void array(const std::string& name, const std::vector<T>& data, const char* type, int components = 1) {
+    text_ += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\"";
+    if (components != 1) text_ += " NumberOfComponents=\"" + std::to_string(components) + "\"";
+    text_ += " format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
+    blocks_.push_back({data.data(), data.size() * sizeof(T)});
+    offset_ += sizeof(std::uint64_t) + blocks_.back().size;
+  }
+
+  /// Field data that says the frame: a string, as 3D Slicer reads and writes it, or else its character codes.
+  void space(const std::string& space, bool as_string) {
+    if (space.empty()) return;
+    text_ += "<!-- SPACE=" + space + ", mm -->\n<FieldData>\n";
+    text_ += as_string ? "<Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">\n"
+                       : "<DataArray type=\"UInt8\" Name=\"SPACE\" NumberOfTuples=\"" +
+                             std::to_string(space.size()) + "\" format=\"ascii\">\n";
+    for (const char c : space) text_ += std::to_string(static_cast<int>(c)) + " ";
+    text_ += as_string ? "0\n</Array>\n</FieldData>\n" : "\n</DataArray>\n</FieldData>\n";
+  }
+
+  void finish(std::FILE* file) {
+    OutputBuffer out(file);
+    out << text_ << "</" << type_ << ">\n<AppendedData encoding=\"raw\">\n_";
+    for (const Block& b : blocks_) {
+      out.binary(static_cast<std::uint64_t>(b.size));
+      out.bytes(b.data, b.size);
+    }
+    out << "\n</AppendedData>\n</VTKFile>\n";
+  }
+
+ private:
+  struct Block {
+    const void* data;
+    std::size_t size;
+  };
+  std::string type_, text_;
+  std::vector<Block> blocks_;
+  std::uint64_t offset_ = 0;
+};
+
+/// Cell data of the tets followed by the triangles.
+struct CellLabels {
+  std::vector<std::int32_t> label, below, above;
+
+  explicit CellLabels(const PreparedMesh& mesh) {
+    const std::size_t cells = mesh.tets.size() + mesh.triangles.size();
+    label.reserve(cells);
+    for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.end - g.begin, g.label);
+    label.resize(cells, 0);
+    below.assign(mesh.tets.size(), -1);
+    above.assign(mesh.tets.size(), -1);
+    for (const PairGroup& g : mesh.pairs) {
+      below.insert(below.end(), g.end - g.begin, g.below);
+      above.insert(above.end(), g.end - g.begin, g.above);
+    }
+  }
+};
+
+/// Corners of the tets followed by those of the triangles, and where each cell ends.
+struct Connectivity {
+  std::vector<std::int64_t> ends;
+  std::vector<std::int32_t> corners;
+
+  explicit Connectivity(const PreparedMesh& mesh) {
+    corners.reserve(4 * mesh.tets.size() + 3 * mesh.triangles.size());
+    ends.reserve(mesh.tets.size() + mesh.triangles.size());
+    for (const auto& t : mesh.tets) {
+      corners.insert(corners.end(), t.begin(), t.end());
+      ends.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+    for (const InterfaceTriangle& t : mesh.triangles) {
+      corners.insert(corners.end(), t.v.begin(), t.v.end());
+      ends.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+  }
+};
+
+void add_points(XmlFile& xml, const PreparedMesh& mesh) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  xml << "<Points>\n";
+  xml.array("Points", mesh.points, "Float64", 3);
+  xml << "</Points>\n";
+}
+
+}  // namespace
+
+void write_vtp(std::FILE* file, const PreparedMesh& mesh) {
+  const CellLabels cells(mesh);
+  const Connectivity polygons(mesh);
+  XmlFile xml("PolyData");
+  xml.space(mesh.space, true);
+  xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) +
+             "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+             std::to_string(mesh.triangles.size()) + "\">\n<CellData>\n";
+  xml.array("label_below", cells.below, "Int32");
+  xml.array("label_above", cells.above, "Int32");
+  xml << "</CellData>\n";
+  add_points(xml, mesh);
+  xml << "<Polys>\n";
+  xml.array("connectivity", polygons.corners, "Int32");
+  xml.array("offsets", polygons.ends, "Int64");
+  xml << "</Polys>\n</Piece>\n";
+  xml.finish(file);
+}
+
+void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
+  const CellLabels cells(mesh);
+  const Connectivity connectivity(mesh);
+  std::vector<std::uint8_t> types(mesh.tets.size(), kTet);
+  types.resize(types.size() + mesh.triangles.size(), kTriangle);
+  XmlFile xml("UnstructuredGrid");
+  xml.space(mesh.space, false);  // meshio refuses a file that holds a string
+  xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
+             std::to_string(types.size()) + "\">\n<CellData Scalars=\"label\">\n";
+  xml.array("label", cells.label, "Int32");
+  xml.array("label_below", cells.below, "Int32");
+  xml.array("label_above", cells.above, "Int32");
+  xml << "</CellData>\n";
+  add_points(xml, mesh);
+  xml << "<Cells>\n";
+  xml.array("connectivity", connectivity.corners, "Int32");
+  xml.array("offsets", connectivity.ends, "Int64");
+  xml.array("types", types, "UInt8");
+  xml << "</Cells>\n</Piece>\n";
+  xml.finish(file);
+}
+
+// Legacy format 3.0, whose binary numbers are big endian.
+void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
+  const CellLabels cells(mesh);
+  OutputBuffer out(file);
+  out << "# vtk DataFile Version 3.0\nstackmesh, mm" << (mesh.space.empty() ? "" : ". " + mesh.space_mark())
+      << "\nBINARY\nDATASET UNSTRUCTURED_GRID\n";
+  if (!mesh.space.empty())  // as characters: meshio refuses a file that holds a string
+    out << "FIELD FieldData 1\nSPACE 1 " << mesh.space.size() << " char\n" << mesh.space << '\n';
+  out << "POINTS " << mesh.points.size() << " double\n";
+  for (const Vec3 p : mesh.points) {
+    out.big_endian(p.x);
+    out.big_endian(p.y);
+    out.big_endian(p.z);
+  }
+  const std::size_t count = mesh.tets.size() + mesh.triangles.size();
+  out << "\nCELLS " << count << ' ' << 5 * mesh.tets.size() + 4 * mesh.triangles.size() << '\n';
+  for (const auto& t : mesh.tets) {
+    out.big_endian(std::int32_t{4});
+    for (const std::int32_t v : t) out.big_endian(v);
+  }
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    out.big_endian(std::int32_t{3});
+    for (const std::int32_t v : t.v) out.big_endian(v);
+  }
+  out << "\nCELL_TYPES " << count << '\n';
+  for (std::size_t i = 0; i < count; ++i) out.big_endian(i < mesh.tets.size() ? kTet : kTriangle);
+  out << "\nCELL_DATA " << count << "\nFIELD FieldData 3\n";
+  const auto field = [&](const char* name, const std::vector<std::int32_t>& values) {
+    out << name << " 1 " << count << " int\n";
+    for (const std::int32_t v : values) out.big_endian(v);
+    out << '\n';
+  };
+  field("label", cells.label);
+  field("label_below", cells.below);
+  field("label_above", cells.above);
+}
+
+}  // namespace stackmesh

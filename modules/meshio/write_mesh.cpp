@@ -1,0 +1,95 @@
+#include "meshio/write_mesh.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <set>
+
+#include "base/error.h"
+#include "meshio/formats.h"
+
+namespace stackmesh {
+namespace {
+
+using Writer = void (*)(std::FILE*, const PreparedMesh&);
+struct Format {
+  const char* ending;
+  Writer writer;
+};
+constexpr Format kSurfaceFormats[] = {
+    {".stl", write_stl}, {".ply", write_ply}, {".obj", write_obj}, {".off", write_off}, {".vtp", write_vtp}};
+constexpr Format kVolumeFormats[] = {{".vtu", write_vtu},
+                                     {".msh", write_msh4},
+                                     {".inp", write_inp},
+                                     {".vtk", write_vtk},
+                                     {".mesh", write_medit}};
+
+/// Where the ending begins; the length of the path if it has none.
+std::size_t ending_of(const std::string& path) {
+  const std::size_t name = path.find_last_of('/') + 1;  // npos + 1 == 0
+  const std::size_t dot = path.find_last_of('.');
+  return dot == std::string::npos || dot < name ? path.size() : dot;
+}
+
+template <std::size_t N>
+Writer find_writer(const Format (&formats)[N], const std::string& path) {
+  std::string ending = path.substr(ending_of(path));
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const auto* found = std::find_if(std::begin(formats), std::end(formats),
+                                   [&](const Format& f) { return ending == f.ending; });
+  return found == std::end(formats) ? nullptr : found->writer;
+}
+
+template <std::size_t N>
+Writer need_writer(const Format (&formats)[N], const std::string& path, const char* kind) {
+  const Writer writer = find_writer(formats, path);
+  if (writer != nullptr) return writer;
+  std::string endings;
+  for (const Format& f : formats) endings += std::string(endings.empty() ? "" : " ") + f.ending;
+  fail_usage(std::string("the ending names no ") + kind + " format", path, "use one of " + endings);
+}
+
+}  // namespace
+
+bool is_surface_format(const std::string& path) {
+  return find_writer(kSurfaceFormats, path) != nullptr;
+}
+bool is_volume_format(const std::string& path) {
+  return find_writer(kVolumeFormats, path) != nullptr;
+}
+
+void write_surface(AtomicFiles& files, const std::string& path, const InterfaceComplex& surface,
+                   const MeshWriteOptions& options) {
+  const Writer writer = need_writer(kSurfaceFormats, path, "surface");
+  const auto write = [&](const std::string& to, const PreparedMesh& mesh) {
+    files.write(to, [&](std::FILE* file) { writer(file, mesh); });
+  };
+  if (!options.per_label) {
+    write(path, prepare_surface(surface, options, path));
+    return;
+  }
+  std::set<Label> labels;
+  for (const InterfaceTriangle& t : surface.triangles) {
+    labels.insert(t.below);
+    labels.insert(t.above);
+  }
+  labels.erase(0);
+  if (labels.empty())
+    throw Error(ErrorKind::no_result, "the surface is empty", path, "check the labels that were asked for");
+  const std::size_t dot = ending_of(path);
+  for (const Label label : labels) {
+    const std::string to = path.substr(0, dot) + "_" + std::to_string(label) + path.substr(dot);
+    write(to, prepare_label_surface(surface, label, options, to));
+  }
+}
+
+void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
+                  const MeshWriteOptions& options) {
+  Writer writer = need_writer(kVolumeFormats, path, "volume");
+  if (writer == write_msh4 && options.msh2) writer = write_msh2;
+  const PreparedMesh prepared = prepare_volume(mesh, options, path);
+  files.write(path, [&](std::FILE* file) { writer(file, prepared); });
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,47 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "model/complex.h"
+#include "model/label_volume.h"
+#include "model/tet_mesh.h"
+
+namespace stackmesh {
+
+/// The frame that the coordinates are already in; it becomes a mark in the file (SPACE=LPS) and changes no
+/// number.
+enum class WorldSpace { lps, ras, none };  // none: no anatomy is known, the file carries no mark
+
+struct MeshWriteOptions {
+  WorldSpace space = WorldSpace::lps;
+  bool per_label = false;         ///< surfaces: NAME_<label>.EXT for each label, closed on its own, outward
+  bool msh2 = false;              ///< .msh as Gmsh 2.2 instead of 4.1
+  std::vector<LabelInfo> labels;  ///< names for sets and physical groups; a label without one is label_<n>
+};
+
+/// True for .stl .ply .obj .off .vtp, in any letter case.
+bool is_surface_format(const std::string& path);
+/// True for .vtu .msh .inp .vtk .mesh, in any letter case.
+bool is_volume_format(const std::string& path);
+
+/// Writes the interfaces, in mm as they are, to one file (or one per label), in the format of its ending.
+/// Each interface stands in the file once. Its normal points from the label to the background, or from the
+/// smaller label to the larger one; label_below and label_above of .ply and .vtp follow that winding. With
+/// per_label the normal points out of the file's label, which is label_below. Triangles come grouped by label
+/// pair; points that no triangle uses are left out. The caller commits `files`.
+/// @throws Error(usage) for another ending, Error(output) when the file cannot be written, Error(no_result)
+/// when there is no triangle, Error(internal) for an index out of range or a coordinate that is not finite.
+void write_surface(AtomicFiles& files, const std::string& path, const InterfaceComplex& surface,
+                   const MeshWriteOptions& options = {});
+
+/// Writes the tets and their interface triangles, in mm as they are, in the format of the path's ending.
+/// Tets come grouped by ascending label, else in the mesh's order, and points that no tet uses are left out,
+/// so that element and node n are the same in every format. The interface triangles are oriented as by
+/// write_surface(). The caller commits `files`. @throws as write_surface(); Error(internal) too when a .inp
+/// is asked for and an interface triangle is not a face of a tet of each of its labels; Error(output) for a
+/// label that Gmsh cannot number.
+void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
+                  const MeshWriteOptions& options = {});
+
+}  // namespace stackmesh
