@@ -124,7 +124,7 @@ std::string number(double v) {
 /// One way to call TetGen.
 struct Call {
   bool refine = false;
-  std::string tolerance;  // "" or "T1e-10"
+  std::string tolerance;  // "" (TetGen's 1e-8 of the box) or "T1e-12"
   double z_scale = 1;
 };
 
@@ -132,28 +132,32 @@ std::string describe(const Call& call, const std::string& switches) {
   return "TetGen -" + switches + (call.z_scale == 1 ? "" : " with z scaled by " + number(call.z_scale));
 }
 
-/// What TetGen complained about, as one line; empty if it did not complain. Progress lines are left out.
+/// What TetGen complained about, as one line; empty if it did not complain. Progress, point numbers (they are
+/// not the complex's) and hints are left out.
 std::string complaint(const std::string& text) {
-  static const char* const signs[] = {"intersect",  "Invalid PLC", "duplicate",      "overlap",
-                                      "very close", "trivial",     "needs at least", "Assertion",
-                                      "rror:",      "bug",         "small"};
-  std::string line, out;
+  static const char* const signs[] = {"intersect",       "Invalid PLC",   "duplicated", "nearly overlap",
+                                      "identical verts", "is replaced",   "trivial",    "needs at least",
+                                      "rror:",           "internal error"};
+  std::vector<std::string> told;
+  std::string line;
   for (std::size_t at = 0; at <= text.size(); ++at) {
     if (at < text.size() && text[at] != '\n') {
       if (static_cast<unsigned char>(text[at]) >= ' ') line += text[at];
       continue;
     }
-    const bool told = std::any_of(std::begin(signs), std::end(signs),
-                                  [&](const char* s) { return line.find(s) != std::string::npos; });
-    const bool detail =
-        !out.empty() && (line.find("1st:") != std::string::npos || line.find("2nd:") != std::string::npos);
-    if ((told || detail) && out.size() < 300) {
+    const std::size_t assertion = line.find("Assertion");
+    const bool matters = std::any_of(std::begin(signs), std::end(signs),
+                                     [&](const char* s) { return line.find(s) != std::string::npos; });
+    if (assertion != std::string::npos) {
+      told.push_back(line.substr(assertion, 120));
+    } else if (matters && line.find('[') == std::string::npos) {
       line.erase(0, line.find_first_not_of(' '));
-      out += (out.empty() ? "" : "; ") + line.substr(0, 200);
+      line.erase(line.find_last_not_of(" .") + 1);
+      told.push_back(line.substr(0, 120));
     }
     line.clear();
   }
-  return out;
+  return told.empty() ? "" : told.back();  // the last one is what stopped it
 }
 
 class Filler {
@@ -176,6 +180,8 @@ class Filler {
     if (!finding.message.empty())
       return failure(Status::refused, finding.message, std::move(finding.triangles));
 
+    if (is_flat()) return failure(Status::refused, "the surface encloses nothing: it lies in one plane");
+
     const double scale = z_scale_for_aspect(complex_);
     const bool wants_refinement = options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3;
     std::string before;  // what was tried and failed, for the message
@@ -196,7 +202,7 @@ class Filler {
     FillResult first = std::move(result);
     if (search(first)) return first;
     for (const Call& next :
-         {Call{false, "T1e-10", scale}, Call{false, "T1e-12", scale}, Call{false, "", 4 * scale},
+         {Call{false, "T1e-12", scale}, Call{false, "T1e-16", scale}, Call{false, "", 4 * scale},
           Call{false, "", scale / 4}, Call{false, "T1e-12", 4 * scale}}) {
       if (Clock::now() >= deadline_) break;
       result = attempt(next, deadline_);
@@ -225,6 +231,15 @@ class Filler {
     return result;
   }
 
+  bool is_flat() const {
+    Vec3 low = input_.points.front(), high = low;
+    for (const Vec3& p : input_.points) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return low.x == high.x || low.y == high.y || low.z == high.z;
+  }
+
   std::string switches(const Call& call) const {
     std::string s = "p";
     if (call.refine) {
@@ -233,7 +248,9 @@ class Filler {
       if (options_.dihedral_deg) s += "/" + number(*options_.dihedral_deg);
       if (options_.max_volume_mm3) s += "a" + number(*options_.max_volume_mm3 * call.z_scale);
     }
-    return s + "Y" + call.tolerance;
+    // Y keeps the surface; M keeps TetGen from merging points closer than its tolerance, which would make
+    // features thinner than 1e-8 of the box intersect themselves.
+    return s + "YM" + call.tolerance;
   }
 
   Reply call_worker(const std::string& switches, double z_scale, Clock::time_point deadline) {
@@ -290,8 +307,10 @@ class Filler {
     for (std::int32_t& v : reply.tets)
       if (v >= 0) v = v < known ? input_.original[v] : v + offset;
     volume::Finding finding = volume::label_tets({std::move(reply.tets), std::move(reply.neighbours)}, mesh);
-    if (!finding.message.empty())
+    if (!finding.message.empty()) {
+      hopeless_ = finding.of_input;
       return failure(Status::refused, name + ": " + finding.message, std::move(finding.triangles));
+    }
     if (mesh.tets.empty()) return failure(Status::empty, name + " left no tetrahedron of any label");
     drop_unused(mesh);
 
@@ -345,7 +364,7 @@ class Filler {
 
   /// Asks TetGen (-d) for the triangles that intersect; true when it found some, now in `refusal`.
   bool search(FillResult& refusal) {
-    const Reply reply = call_worker("pdJ", 1, deadline_);
+    const Reply reply = call_worker("pdMJ", 1, deadline_);
     std::set<std::int32_t> found;
     if (reply.kind == Reply::Kind::done) {
       const auto count = static_cast<std::int32_t>(complex_.triangles.size());
@@ -393,7 +412,7 @@ class Filler {
   worker::Program program_;
   Clock::time_point deadline_;
   Compact input_;
-  bool hopeless_ = false;  // no worker to be had: trying again is no use
+  bool hopeless_ = false;  // no worker to be had, or an invalid complex: trying again is no use
 };
 
 }  // namespace

@@ -101,6 +101,7 @@ class Flood {
     seed();
     if (finding_.message.empty()) spread();
     if (finding_.message.empty()) check_sides();
+    finding_.of_input = fits_ && std::find(sides_.begin(), sides_.end(), 0) == sides_.end();
     return std::move(finding_);
   }
   const std::vector<Label>& labels() const { return labels_; }
@@ -161,6 +162,7 @@ class Flood {
         }
         if (!shares(static_cast<std::size_t>(next), face(t, i))) {
           finding_.message = "TetGen's tetrahedra do not fit together";
+          fits_ = false;
           return;
         }
         give(static_cast<std::size_t>(next), labels_[t], -1);
@@ -196,6 +198,7 @@ class Flood {
       sides_;  // bits: tet faces that lie on a triangle; triangle sides that were met
   std::vector<std::int32_t> queue_;
   Finding finding_;
+  bool fits_ = true;
 };
 
 void add(Volume& volume, double term) {

@@ -13,6 +13,7 @@ namespace stackmesh::volume {
 struct Finding {
   std::string message;
   std::vector<std::int32_t> triangles;  // ascending, without repeats
+  bool of_input = false;                // the complex itself is at fault: another call of TetGen is no use
 };
 
 /// Is every label's surface closed, and no triangle degenerate or repeated?

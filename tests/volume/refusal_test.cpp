@@ -74,6 +74,7 @@ TEST(FillRefusal, InterpenetratingBoxesGiveTheCrossingTriangles) {
   for (int i = 12; i < 20; ++i) crossing += contains(r.offending_triangles, i);
   EXPECT_GE(crossing, 4) << r.message;
   for (const std::int32_t i : r.offending_triangles) EXPECT_LT(i, 24);
+  EXPECT_NE(r.message.find("intersect"), std::string::npos) << r.message;
   EXPECT_EQ(r.message.find('\n'), std::string::npos);
   EXPECT_TRUE(r.mesh.tets.empty());
 }
