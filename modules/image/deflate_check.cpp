@@ -2,13 +2,15 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <vector>
 
 namespace stackmesh {
 
-std::string check_deflate(const std::string& path, std::uint64_t offset, std::uint64_t needed) {
+std::string check_deflate(const std::string& path, std::uint64_t offset, std::uint64_t size,
+                          std::uint64_t needed) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file || fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) != 0) return "cannot be opened";
   z_stream stream{};
@@ -21,7 +23,9 @@ std::string check_deflate(const std::string& path, std::uint64_t offset, std::ui
   while (true) {
     if (stream.avail_in == 0) {
       stream.next_in = in.data();
-      stream.avail_in = static_cast<uInt>(std::fread(in.data(), 1, in.size(), file.get()));
+      const std::size_t want = static_cast<std::size_t>(std::min<std::uint64_t>(in.size(), size));
+      stream.avail_in = static_cast<uInt>(std::fread(in.data(), 1, want, file.get()));
+      size -= stream.avail_in;
       if (stream.avail_in == 0) break;
     }
     if (complete) {

@@ -6,8 +6,12 @@
 #include <itkNrrdImageIO.h>
 #include <nifti1_io.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -32,6 +36,8 @@ class Quiet {
     nifti_set_debug_level(0);
   }
   ~Quiet() { std::cerr.rdbuf(saved_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
 
  private:
   static std::mutex& mutex() {
@@ -41,6 +47,43 @@ class Quiet {
   std::lock_guard<std::mutex> lock_;
   std::ostringstream sink_;
   std::streambuf* saved_;
+};
+
+/// Asked for x.nii.gz, niftilib takes the voxels of an x.nii or x.img that lies beside it. Where there is
+/// one, the file is read through a link in a folder of its own.
+class AloneNifti {
+ public:
+  explicit AloneNifti(const std::string& path) : path_(path) {
+    const std::string name = lower_case(path);
+    const std::string base = path.substr(0, path.size() - (name.back() == 'z' ? 7 : 4));
+    const bool crowded = [&] {
+      for (const char* ending : {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".nia"}) {
+        std::string upper = ending;
+        for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        for (const std::string& other : {base + ending, base + upper})
+          if (other != path && std::filesystem::exists(other)) return true;
+      }
+      return false;
+    }();
+    if (!crowded) return;
+    std::string folder = (std::filesystem::temp_directory_path() / "stackmesh-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr)
+      fail_input("no temporary folder can be made, which reading this file beside others of its name needs",
+                 path, "rename the file, or set TMPDIR to a folder that you may write to");
+    folder_ = folder;
+    path_ = folder + (name.back() == 'z' ? "/volume.nii.gz" : "/volume.nii");
+    std::filesystem::create_symlink(std::filesystem::absolute(path), path_);
+  }
+  ~AloneNifti() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  AloneNifti(const AloneNifti&) = delete;
+  AloneNifti& operator=(const AloneNifti&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_, folder_;
 };
 
 itk::ImageIOBase::Pointer make_reader(FileFormat format) {
@@ -91,6 +134,34 @@ std::array<Vec3, 3> orthonormal(std::array<Vec3, 3> a, const std::string& path) 
   }
   for (Vec3& v : a) v = v + Vec3{0, 0, 0};  // -0 becomes 0
   return a;
+}
+
+/// What NIfTI leaves open: two orientations that may disagree, none at all, units.
+void settle_nifti(const HeaderFacts& facts, LabelVolume& volume, const std::string& path) {
+  if (!facts.has_forms)
+    volume.warnings.push_back(path +
+                              ": carries no orientation; its axes are taken as left, posterior, superior");
+  // ITK 5.2 scales the voxel size to mm, but not the origin.
+  if (facts.unit_mm != 1 && !facts.raw_origin.empty() &&
+      norm(volume.origin_mm - facts.raw_origin[0]) <= 1e-6 * norm(facts.raw_origin[0]))
+    volume.origin_mm = facts.unit_mm * volume.origin_mm;
+  if (facts.sform.empty()) return;
+  double apart = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double index[3];
+    for (int d = 0; d < 3; ++d) index[d] = corner >> d & 1 ? volume.size[d] - 1 : 0;
+    Vec3 p = facts.sform[3];
+    for (int d = 0; d < 3; ++d) p = p + index[d] * facts.sform[d];
+    apart = std::max(apart, norm(facts.unit_mm * p - volume.world(index[0], index[1], index[2])));
+  }
+  if (apart > 0.1 * *std::min_element(volume.spacing_mm.begin(), volume.spacing_mm.end())) {
+    std::ostringstream text;
+    text << path << ": its header gives voxel positions up to " << apart
+         << " mm apart (pixdim, qform, sform); as ITK does, pixdim is the voxel size, and the qform holds "
+            "unless the "
+            "sform's code is 1";
+    volume.warnings.push_back(text.str());
+  }
 }
 
 void take_grid(const itk::ImageIOBase& io, LabelVolume& volume, const std::string& path) {
@@ -160,7 +231,7 @@ void read_voxels(itk::ImageIOBase& io, const std::string& path, const HeaderFact
     // ITK overlooks broken check sums and short streams, so the stream is checked beside the reading.
     parallel_for(facts.compressed ? 2 : 1, 0, [&](std::size_t task) {
       if (task == 1) {
-        damage = check_deflate(facts.data_path, facts.data_offset, facts.needed_bytes);
+        damage = check_deflate(facts.data_path, facts.data_offset, facts.data_size, facts.needed_bytes);
         return;
       }
       try {
@@ -230,14 +301,17 @@ LabelVolume read_volume_file(const std::string& path, FileFormat format) {
   try {
     const Quiet quiet;
     const itk::ImageIOBase::Pointer io = make_reader(format);
-    io->SetFileName(path);
+    std::unique_ptr<const AloneNifti> alone;
+    if (format == FileFormat::nifti) alone = std::make_unique<const AloneNifti>(path);
+    io->SetFileName(alone ? alone->path() : path);
     io->ReadImageInformation();
     take_grid(*io, volume, path);
+    if (format == FileFormat::nifti) settle_nifti(facts, volume, path);
     read_voxels(*io, path, facts, volume);
   } catch (const Error&) {
     throw;
-  } catch (const itk::ExceptionObject& e) {
-    fail_input(std::string("the file is damaged or truncated (") + e.GetDescription() + ")", path, again);
+  } catch (const itk::ExceptionObject&) {  // its text holds addresses and source lines, nothing for users
+    fail_input("the file is damaged or truncated: its voxels or header cannot be decoded", path, again);
   } catch (const std::bad_alloc&) {
     fail_input("the image does not fit into memory", path,
                "crop it, or store it as 8- or 16-bit whole numbers");

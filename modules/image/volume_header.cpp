@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -71,11 +70,14 @@ T number_at(const std::vector<unsigned char>& bytes, std::size_t offset, bool sw
   return value;
 }
 
-double cosine_error(const std::array<Vec3, 3>& v) {
+/// The largest cosine between the first three vectors; NaN where one of them is zero.
+double cosine_error(const std::vector<Vec3>& v) {
   double worst = 0;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < i; ++j)
-      worst = std::max(worst, std::abs(dot(v[i], v[j])) / (norm(v[i]) * norm(v[j])));
+    for (int j = 0; j < i; ++j) {
+      const double cosine = std::abs(dot(v[i], v[j])) / (norm(v[i]) * norm(v[j]));
+      worst = cosine <= worst ? worst : cosine;  // keeps a NaN
+    }
   return worst;
 }
 
@@ -102,35 +104,29 @@ int nifti_bytes(int datatype) {
   }
 }
 
-void check_nifti_sform(const std::vector<unsigned char>& h, bool swap, const double* pixdim,
-                       HeaderFacts& facts, const std::string& path) {
+/// Reads the two orientations of a NIfTI header. ITK takes the sform where its code is 1 or it is alone, else
+/// the qform, and straightens a sheared sform in silence.
+void check_nifti_forms(const std::vector<unsigned char>& h, bool swap, HeaderFacts& facts,
+                       const std::string& path) {
   const int qform = number_at<std::int16_t>(h, 252, swap), sform = number_at<std::int16_t>(h, 254, swap);
-  if (sform <= 0) {
-    for (int offset = 256; qform > 0 && offset < 280; offset += 4)
-      if (!std::isfinite(number_at<float>(h, offset, swap)))
-        damaged("the header is damaged: its orientation (qform) is not finite", path);
-    return;
+  const auto real = [&](int offset) {
+    const double value = number_at<float>(h, offset, swap);
+    if (!std::isfinite(value)) damaged("the header is damaged: its orientation is not finite", path);
+    return value;
+  };
+  facts.has_forms = qform > 0 || sform > 0;
+  if (qform > 0) {
+    for (int offset = 256; offset < 268; offset += 4) real(offset);
+    facts.raw_origin = {{-real(268), -real(272), real(276)}};
   }
-  std::array<Vec3, 3> column;
-  for (int c = 0; c < 4; ++c) {
-    const Vec3 v = {number_at<float>(h, 280 + 4 * c, swap), number_at<float>(h, 296 + 4 * c, swap),
-                    number_at<float>(h, 312 + 4 * c, swap)};
-    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-      damaged("the header is damaged: its orientation (sform) is not finite", path);
-    if (c < 3) column[c] = v;
-  }
-  for (const Vec3& c : column)
-    if (norm(c) == 0) damaged("the header is damaged: its orientation (sform) has a zero direction", path);
-  if (cosine_error(column) > 1e-4)
-    fail_input("the voxel grid is sheared: its directions (sform) are not at right angles", path,
+  if (sform <= 0) return;
+  for (int c = 0; c < 4; ++c)
+    facts.sform.push_back({-real(280 + 4 * c), -real(296 + 4 * c), real(312 + 4 * c)});
+  if (sform != 1 && qform > 0) return;
+  facts.raw_origin = {facts.sform[3]};
+  if (!(cosine_error(facts.sform) <= 1e-4))  // a zero column gives a NaN
+    fail_input("the voxel grid is sheared or its directions (sform) are zero", path,
                "resample the labels to a rectangular grid with nearest neighbour");
-  for (int i = 0; i < 3; ++i)
-    if (std::abs(norm(column[i]) - pixdim[i]) > 1e-3 * pixdim[i]) {
-      std::ostringstream text;
-      text << path << ": voxel size " << pixdim[i] << " (pixdim) and " << norm(column[i])
-           << " (sform) disagree along axis " << i + 1 << "; pixdim is used";
-      facts.warnings.push_back(text.str());
-    }
 }
 
 HeaderFacts check_nifti(const std::string& path) {
@@ -182,7 +178,9 @@ HeaderFacts check_nifti(const std::string& path) {
   const std::uint64_t begin = std::max<std::uint64_t>(352, static_cast<std::uint64_t>(offset));
   facts.needed_bytes = begin + voxels * static_cast<std::uint64_t>(bytes);
   require_possible(facts, path);
-  check_nifti_sform(h, swap, pixdim, facts, path);
+  const int unit = h[123] & 7;
+  facts.unit_mm = unit == 1 ? 1e3 : unit == 3 ? 1e-3 : 1;
+  check_nifti_forms(h, swap, facts, path);
   return facts;
 }
 
@@ -505,6 +503,12 @@ HeaderFacts check_metaimage(const std::string& path) {
     return !v.empty() && (v[0] == 't' || v[0] == '1' || v[0] == 'y');
   };
   facts.compressed = yes("compresseddata");
+  const std::string stored = header.get("compresseddatasize");
+  if (facts.compressed && !stored.empty()) {
+    const double bytes = to_number(stored, "CompressedDataSize", path);
+    if (!(bytes >= 1 && bytes < 1e18)) damaged("the header is damaged: 'CompressedDataSize'", path);
+    facts.data_size = static_cast<std::uint64_t>(bytes);
+  }
   if (header.get("binarydata").empty() || yes("binarydata")) require_possible(facts, path);
   return facts;
 }

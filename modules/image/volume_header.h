@@ -13,10 +13,16 @@ namespace stackmesh {
 struct HeaderFacts {
   std::vector<std::string> warnings;
   std::map<Label, std::string> names;  ///< label names that the file holds (segmentation NRRD)
-  bool compressed = false;             ///< the voxels are a gzip or zlib stream ...
-  std::string data_path;               ///< ... of this file
-  std::uint64_t data_offset = 0;       ///< ... beginning here
-  std::uint64_t needed_bytes = 0;      ///< ... which must yield at least this much
+  double unit_mm = 1;                  ///< NIfTI: what the file's unit of length is, where it says so
+  bool has_forms = true;               ///< NIfTI: false when it carries no orientation at all
+  std::vector<Vec3>
+      sform;  ///< NIfTI: columns of its sform in its own unit, LPS: three axes, origin; or empty
+  std::vector<Vec3> raw_origin;   ///< NIfTI: one entry, the origin of the form in use, in its own unit, LPS
+  bool compressed = false;        ///< the voxels are a gzip or zlib stream ...
+  std::string data_path;          ///< ... of this file
+  std::uint64_t data_offset = 0;  ///< ... beginning here
+  std::uint64_t data_size = UINT64_MAX;  ///< ... of at most this many bytes
+  std::uint64_t needed_bytes = 0;        ///< ... which must yield at least this much
 };
 
 /// Checks the header of a volume file before ITK sees it: sizes, spacing, directions, completeness.
