@@ -191,7 +191,7 @@ class Filler {
       const auto budget = std::chrono::duration_cast<Clock::duration>((deadline_ - Clock::now()) * 0.6);
       FillResult result = attempt({true, "", scale}, std::min(deadline_, Clock::now() + budget));
       if (result.status == Status::verified || hopeless_) return result;
-      refinement_pays = result.status == Status::refused;
+      refinement_pays = result.status != Status::timed_out;
       before = result.message;
     }
     Call call{false, "", scale};

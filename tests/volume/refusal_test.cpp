@@ -222,6 +222,46 @@ TEST(FillWorker, MissingWorkerIsNamed) {
   EXPECT_NE(r.message.find("No such file"), std::string::npos) << r.message;
 }
 
+// Workers that die unless the switches contain the given text: every other way to call TetGen fails.
+FillOptions picky(const std::string& wanted, bool refine) {
+  FillOptions options;
+  options.worker_args = {"--picky-worker", wanted};
+  if (refine) options.radius_edge = 1.4;
+  return options;
+}
+
+TEST(FillWorker, FailedCallIsTriedOtherwise) {
+  const auto complex = cube(4);
+  const FillResult r = fill_volume(complex, picky("T1e-16", false));
+  ASSERT_EQ(r.status, Status::verified) << r.message;
+  EXPECT_NE(r.message.find("T1e-16"), std::string::npos) << r.message;
+  EXPECT_NE(r.message.find("before that, TetGen -pYM died"), std::string::npos) << r.message;
+  shapes::expect_fills(r.mesh, complex);
+}
+
+TEST(FillWorker, RefinementIsTriedAgainWhereFillingSucceeds) {
+  const auto complex = cube(4);
+  const FillResult r = fill_volume(complex, picky("T1e-12", true));
+  ASSERT_EQ(r.status, Status::verified) << r.message;
+  EXPECT_EQ(r.message.find("TetGen -pq1.4YMT1e-12"), 0u) << r.message;
+  shapes::expect_fills(r.mesh, complex);
+}
+
+TEST(FillWorker, FailedRefinementFallsBackToPlainFilling) {
+  const auto complex = cube(4);
+  const FillResult r = fill_volume(complex, picky("pYM", true));
+  ASSERT_EQ(r.status, Status::verified) << r.message;
+  EXPECT_EQ(r.message.find("TetGen -pYM:"), 0u) << r.message;
+  EXPECT_NE(r.message.find("before that, TetGen -pq1.4YM died"), std::string::npos) << r.message;
+}
+
+TEST(FillWorker, WorkerThatAlwaysDiesIsACrash) {
+  const FillResult r = fill_volume(cube(4), picky("no such switch", true));
+  EXPECT_EQ(r.status, Status::crashed);
+  EXPECT_NE(r.message.find("signal 9"), std::string::npos) << r.message;
+  EXPECT_TRUE(r.mesh.tets.empty());
+}
+
 TEST(FillWorker, LeavesNoDescriptorAndNoChildBehind) {
   const std::size_t before = open_descriptors();
   fill_volume(cube(), {});
