@@ -1,0 +1,49 @@
+#include <cstdio>
+
+#include "base/error.h"
+#include "commands.h"
+#include "meshio/write_sections.h"
+#include "options.h"
+
+namespace stackmesh::app {
+namespace {
+
+struct ContoursArguments {
+  InputArguments input;
+  ContourArguments contours;
+  TerminalArguments terminal;
+  std::string output;
+};
+
+void run(const ContoursArguments& a) {
+  if (!is_section_format(a.output)) fail_usage("unknown ending of an output", a.output, "choose .json, .svg or .cnt");
+  const auto progress = a.terminal.make_progress();
+  const ContourOptions options = a.contours.options();
+  Input input = read_input(a.input.options());
+  const Stack stack = input.sections ? std::move(*input.sections) : extract_sections(*input.volume, options, *progress).stack;
+  AtomicFiles files;
+  write_sections(files, a.output, stack);
+  files.commit();
+  if (a.terminal.quiet) return;
+  print_warnings(input.warnings);
+  std::size_t vertices = 0, edges = 0;
+  for (const Section& s : stack.sections) {
+    vertices += s.points.size();
+    edges += s.edges.size();
+  }
+  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges, a.output.c_str());
+}
+
+}  // namespace
+
+void add_contours_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("contours", "The simplified sections as .json, .svg or .cnt");
+  auto a = std::make_shared<ContoursArguments>();
+  a->input.add_to(*command, true);
+  command->add_option("-o,--output", a->output, "output file: .json, .svg or .cnt")->required();
+  a->contours.add_to(*command);
+  a->terminal.add_to(*command);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace stackmesh::app

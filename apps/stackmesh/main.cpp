@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include "base/error.h"
+#include "commands.h"
+#include "volume/tetgen_worker.h"
+
+namespace {
+
+int report(const char* text, stackmesh::ErrorKind kind) {
+  std::fprintf(stderr, "stackmesh: error: %s\n", text);
+  return static_cast<int>(kind);
+}
+
+int run(int argc, char** argv) {
+  CLI::App program{"Label slices of CT and MRI to conforming surfaces and tetrahedral meshes, closed and free of intersections."};
+  program.name("stackmesh");
+  program.set_version_flag("--version", "stackmesh " STACKMESH_VERSION);
+  program.require_subcommand(1);
+  program.footer("stackmesh COMMAND --help tells a command's options.\nLicence: AGPL-3.0-or-later.");
+  stackmesh::app::add_mesh_command(program);
+  stackmesh::app::add_surface_command(program);
+  stackmesh::app::add_contours_command(program);
+  stackmesh::app::add_info_command(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& e) {  // --help, --version
+    return program.exit(e);
+  } catch (const CLI::ParseError& e) {
+    return report((std::string(e.what()) + ", command line; see stackmesh --help").c_str(), stackmesh::ErrorKind::usage);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // The volume mesher runs in a worker process of this same program.
+  if (argc > 1 && std::strcmp(argv[1], "--tetgen-worker") == 0) return stackmesh::tetgen_worker_main();
+  try {
+    return run(argc, argv);
+  } catch (const stackmesh::Error& e) {
+    return report(e.what(), e.kind());
+  } catch (const std::bad_alloc&) {
+    return report("out of memory, this machine; mesh fewer labels or a smaller volume at once", stackmesh::ErrorKind::no_result);
+  } catch (const std::exception& e) {
+    return report((std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input").c_str(),
+                  stackmesh::ErrorKind::internal);
+  }
+}

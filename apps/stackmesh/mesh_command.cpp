@@ -1,0 +1,153 @@
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "commands.h"
+#include "options.h"
+#include "pipeline/mesh_run.h"
+
+namespace stackmesh::app {
+namespace {
+
+/// Options of the surface enhancement, which is not built yet: they are checked, and named in a warning.
+struct EnhanceArguments {
+  std::string edge_length, interpolate = "auto";
+  double deviation = 0, edge_min = 0, edge_max = 0, gradation = 1.3;
+  int smooth = 5;
+  long target_tets = 1000000;
+  bool off = false;
+};
+
+struct MeshArguments {
+  InputArguments input;
+  ContourArguments contours;
+  TerminalArguments terminal;
+  EnhanceArguments enhance;
+  std::vector<std::string> outputs, reports;
+  std::string caps = "auto", space = "lps";
+  double snap_mm = 0, timeout_s = 600;
+  double max_volume = 0, radius_edge = 0, dihedral = 0;
+  int order = 1;
+  bool strict = false, per_label = false, msh2 = false;
+};
+
+void add_options(CLI::App& command, MeshArguments& a, Target target) {
+  const CLI::Range positive(1e-12, 1e12);
+  a.input.add_to(command, true);
+  command.add_option("-o,--output", a.outputs,
+                     target == Target::volume ? "output: .vtu .msh .inp .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
+                                              : "output: .stl .ply .obj .off .vtp; repeatable")
+      ->required()->allow_extra_args(false);
+  command.add_option("--report", a.reports, "report file, .json; repeatable")->allow_extra_args(false);
+  a.contours.add_to(command);
+  command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round")->capture_default_str();
+  command.add_option("--space", a.space, "world frame of what is written: lps or ras")->capture_default_str();
+  command.add_flag("--per-label", a.per_label, "surfaces: NAME_<label>.EXT for each label");
+  command.add_flag("--strict", a.strict, "a fallback or a lost detail is exit 4");
+  EnhanceArguments& e = a.enhance;
+  command.add_option("--interpolate", e.interpolate, "virtual sections per gap: auto or a number; 0 is the paper's direct stitch")->capture_default_str();
+  command.add_option("--deviation", e.deviation, "curvature-adapted sizing: largest distance to the curved surface, mm")->check(positive);
+  command.add_option("--edge-length", e.edge_length, "uniform edge length, mm; per label 5=2.0,9=1.0");
+  command.add_option("--edge-min", e.edge_min, "smallest edge of --deviation, mm")->check(positive);
+  command.add_option("--edge-max", e.edge_max, "largest edge of --deviation, mm")->check(positive);
+  command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(CLI::Range(1.0, 100.0))->capture_default_str();
+  command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none")->check(CLI::Range(0, 10000))->capture_default_str();
+  command.add_flag(target == Target::volume ? "--no-enhance" : "--raw,--no-enhance", e.off, "the stitched surface as it is");
+  if (target == Target::surface) {
+    a.terminal.add_to(command);
+    return;
+  }
+  command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str();
+  command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3")->check(positive);
+  command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(CLI::Range(1.0, 100.0));
+  command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(CLI::Range(0.0, 40.0));
+  command.add_option("--order", a.order, "1: linear tetrahedra")->check(CLI::Range(1, 2))->capture_default_str();
+  command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2");
+  command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str();
+  a.terminal.add_to(command);
+}
+
+std::string text_of(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
+}
+
+MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Target target) {
+  MeshRunOptions o;
+  o.target = target;
+  o.command = target == Target::volume ? "mesh" : "surface";
+  o.version = STACKMESH_VERSION;
+  o.input = a.input.options();
+  o.contours = a.contours.options();
+  o.threads = a.contours.threads;
+  o.stitch.snap_mm = a.snap_mm;
+  parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
+  if (a.order != 1) fail_usage("quadratic tetrahedra are not built yet", "--order 2", "use --order 1");
+  if (a.max_volume > 0) o.fill.max_volume_mm3 = a.max_volume;
+  if (a.radius_edge > 0) o.fill.radius_edge = a.radius_edge;
+  if (a.dihedral > 0) o.fill.dihedral_deg = a.dihedral;
+  o.fill.timeout_s = a.timeout_s;
+  o.space = a.space;
+  o.outputs = a.outputs;
+  o.reports = a.reports;
+  o.write.per_label = a.per_label;
+  o.write.msh2 = a.msh2;
+  o.strict = a.strict;
+
+  const EnhanceArguments& e = a.enhance;
+  if (!e.off || e.interpolate != "0")
+    o.notes.push_back("surface enhancement and virtual sections are not built yet: this run is that of --no-enhance --interpolate 0");
+  for (const char* name : {"--deviation", "--edge-length", "--edge-min", "--edge-max", "--gradation", "--smooth", "--target-tets"})
+    if (const CLI::Option* option = command.get_option_no_throw(name); option != nullptr && option->count() > 0)
+      o.notes.push_back(std::string(name) + " has no effect before enhancement is built");
+  o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
+                    {"merge", a.input.merge ? "on" : "off"},
+                    {"axis", a.contours.axis},
+                    {"simplify_px", text_of(a.contours.simplify_px)},
+                    {"snap_mm", text_of(a.snap_mm)},
+                    {"caps", a.caps},
+                    {"interpolate", "0"},
+                    {"enhance", "off"},
+                    {"space", a.space},
+                    {"threads", a.contours.threads > 0 ? std::to_string(a.contours.threads) : "all"},
+                    {"strict", a.strict ? "on" : "off"}};
+  if (target == Target::volume) {
+    o.option_texts.push_back({"max_volume_mm3", a.max_volume > 0 ? text_of(a.max_volume) : "unset"});
+    o.option_texts.push_back({"radius_edge", a.radius_edge > 0 ? text_of(a.radius_edge) : "unset"});
+    o.option_texts.push_back({"dihedral_deg", a.dihedral > 0 ? text_of(a.dihedral) : "unset"});
+  }
+  return o;
+}
+
+void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
+  std::printf("input    %zu sections, %zu labels, %zu contour vertices\n", r.input.sections, r.labels.size(), r.contours.vertices);
+  std::printf("surface  %zu triangles, %zu open edges, %zu self-intersections (%s)\n", r.surface->triangles, r.surface->open_edges,
+              r.surface->self_intersections, r.surface_level.c_str());
+  if (r.volume)
+    std::printf("volume   %zu tetrahedra, dihedral angles %.2f to %.2f degrees, closure %s\n", r.volume->tets, r.volume->dihedral_min_deg,
+                r.volume->dihedral_max_deg, r.closure.c_str());
+  for (const std::string& o : outputs) std::printf("written  %s\n", o.c_str());
+}
+
+void add(CLI::App& program, const char* name, const char* description, Target target) {
+  CLI::App* command = program.add_subcommand(name, description);
+  auto a = std::make_shared<MeshArguments>();
+  add_options(*command, *a, target);
+  command->callback([a, command, target] {
+    const MeshRunOptions options = to_options(*command, *a, target);
+    const auto progress = a->terminal.make_progress();
+    const RunReport report = run_mesh(options, *progress);
+    if (a->terminal.quiet) return;
+    print_warnings(report.warnings);
+    print_summary(report, a->outputs);
+  });
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& program) { add(program, "mesh", "Label stack to a verified volume mesh (and its surface)", Target::volume); }
+void add_surface_command(CLI::App& program) { add(program, "surface", "Label stack to a verified surface", Target::surface); }
+
+}  // namespace stackmesh::app

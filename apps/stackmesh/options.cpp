@@ -1,0 +1,111 @@
+#include "options.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/error.h"
+
+namespace stackmesh::app {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> out = {""};
+  for (char c : text) {
+    if (c == at) out.emplace_back();
+    else out.back() += c;
+  }
+  return out;
+}
+
+double number(const std::string& text, const char* option) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value))
+    fail_usage("'" + text + "' is not a number", option, "see --help");
+  return value;
+}
+
+Caps caps_named(const std::string& name) {
+  if (name == "auto") return Caps::automatic;
+  if (name == "flat") return Caps::flat;
+  if (name == "round") return Caps::round;
+  fail_usage("unknown cap '" + name + "'", "--caps", "choose auto, flat or round, or per label 5=flat,9=round");
+}
+
+}  // namespace
+
+void InputArguments::add_to(CLI::App& command, bool selection) {
+  command.add_option("INPUT", paths, "label volume, folder or quoted glob of slices or masks, .cnt file(s) or LABEL=FILE.cnt")->required();
+  command.add_option("--spacing", spacing, "X,Y,Z mm of a PNG/TIFF stack");
+  if (!selection) return;
+  command.add_option("--label", labels, "labels to use by number or name: 1,4,7-9,femur_left (default: all)");
+  command.add_flag("--merge", merge, "selected labels become one, numbered as the smallest");
+}
+
+InputOptions InputArguments::options() const {
+  InputOptions o;
+  o.paths = paths;
+  o.labels = labels;
+  o.merge = merge;
+  if (!spacing.empty()) {
+    const std::vector<std::string> parts = split(spacing, ',');
+    if (parts.size() != 3) fail_usage("--spacing needs three numbers", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
+    std::array<double, 3> s{};
+    for (int i = 0; i < 3; ++i) {
+      s[i] = number(parts[i], "--spacing");
+      if (s[i] <= 0) fail_usage("--spacing must be positive", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
+    }
+    o.spacing_mm = s;
+  }
+  return o;
+}
+
+void ContourArguments::add_to(CLI::App& command) {
+  command.add_option("--axis", axis, "stacking axis: auto (the coarsest spacing), x, y or z")->capture_default_str();
+  command.add_option("--simplify", simplify_px, "contour simplification in pixels; 0 keeps every crack")
+      ->check(CLI::Range(0.0, 1000.0))->capture_default_str();
+  command.add_option("--threads", threads, "threads (default: all)")->check(CLI::Range(1, 1024));
+}
+
+ContourOptions ContourArguments::options() const {
+  ContourOptions o;
+  o.simplify_px = simplify_px;
+  o.threads = threads;
+  if (axis == "auto") o.axis = StackAxis::automatic;
+  else if (axis == "x") o.axis = StackAxis::x;
+  else if (axis == "y") o.axis = StackAxis::y;
+  else if (axis == "z") o.axis = StackAxis::z;
+  else fail_usage("unknown axis '" + axis + "'", "--axis", "choose auto, x, y or z");
+  return o;
+}
+
+void TerminalArguments::add_to(CLI::App& command) {
+  command.add_option("--progress", progress, "auto, plain or none; on stderr")->check(CLI::IsMember({"auto", "plain", "none"}))->capture_default_str();
+  command.add_flag("--quiet", quiet, "only errors");
+  command.add_flag("--verbose", verbose, "a line per stage, as --progress plain");
+}
+
+std::unique_ptr<Progress> TerminalArguments::make_progress() const {
+  return make_terminal_progress(quiet || progress == "none" ? ProgressMode::none
+                                : verbose || progress == "plain" ? ProgressMode::plain
+                                                                 : ProgressMode::automatic);
+}
+
+void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label) {
+  if (text.find('=') == std::string::npos) {
+    all = caps_named(text);
+    return;
+  }
+  for (const std::string& item : split(text, ',')) {
+    const std::size_t at = item.find('=');
+    if (at == std::string::npos || at == 0) fail_usage("'" + item + "' names no label", "--caps " + text, "write --caps 5=flat,9=round");
+    per_label.emplace_back(item.substr(0, at), caps_named(item.substr(at + 1)));
+  }
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& w : warnings) std::fprintf(stderr, "stackmesh: warning: %s\n", w.c_str());
+}
+
+}  // namespace stackmesh::app

@@ -1,0 +1,48 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/progress.h"
+#include "contour/extract.h"
+#include "pipeline/input.h"
+#include "stitch/stitch.h"
+
+namespace stackmesh::app {
+
+/// INPUT, --spacing, --label, --merge: what every command that reads labels takes.
+struct InputArguments {
+  std::vector<std::string> paths;
+  std::string spacing, labels;
+  bool merge = false;
+  void add_to(CLI::App& command, bool selection);
+  InputOptions options() const;  ///< @throws Error(usage)
+};
+
+/// --axis, --simplify, --threads.
+struct ContourArguments {
+  std::string axis = "auto";
+  double simplify_px = 0.5;
+  int threads = 0;
+  void add_to(CLI::App& command);
+  ContourOptions options() const;  ///< @throws Error(usage)
+};
+
+/// --progress, --quiet, --verbose.
+struct TerminalArguments {
+  std::string progress = "auto";
+  bool quiet = false, verbose = false;
+  void add_to(CLI::App& command);
+  std::unique_ptr<Progress> make_progress() const;
+};
+
+/// "auto", "flat", "round", or per label "5=flat,9=round". @throws Error(usage)
+void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label);
+
+/// A warning as a line on stderr.
+void print_warnings(const std::vector<std::string>& warnings);
+
+}  // namespace stackmesh::app

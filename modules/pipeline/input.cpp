@@ -1,0 +1,73 @@
+#include "pipeline/input.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "image/read_contours.h"
+#include "image/read_labels.h"
+#include "stitch/polygons.h"
+
+namespace stackmesh {
+namespace {
+
+void read_contours(const InputOptions& options, Input& input) {
+  std::vector<ContourFile> files;
+  for (const std::string& path : options.paths) {
+    if (!is_contour_input(path)) fail_usage("a contour file cannot be mixed with other input", path, "give .cnt files only");
+    files.push_back(read_contour_file(path));
+  }
+  // Files that only have a name get the free numbers in order; several bare files count up.
+  std::vector<Label> taken;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const bool bare = files.size() > 1 && options.paths[i].find('=') == std::string::npos;
+    if (bare) files[i].label = 0;
+    if (files[i].label != 0) taken.push_back(files[i].label);
+  }
+  Label next = 1;
+  for (ContourFile& f : files) {
+    input.warnings.insert(input.warnings.end(), f.warnings.begin(), f.warnings.end());
+    if (f.label != 0) continue;
+    while (std::find(taken.begin(), taken.end(), next) != taken.end()) ++next;
+    f.label = next++;
+  }
+  if (!options.labels.empty()) {
+    std::vector<LabelInfo> known = {{0, ""}};
+    for (const ContourFile& f : files) known.push_back({f.label, f.name});
+    const std::vector<std::size_t> keep = resolve_labels(known, options.labels);
+    std::vector<ContourFile> chosen;
+    for (std::size_t k : keep) chosen.push_back(files[k - 1]);
+    files = std::move(chosen);
+  }
+  if (options.merge && files.size() > 1)
+    fail_usage("--merge is for label volumes", files[0].path, "give the outline of the merged label as one file");
+  input.kind = "contours";
+  input.sections = sections_from_contours(files, input.warnings);
+  input.labels.assign(input.sections->labels.begin() + 1, input.sections->labels.end());
+}
+
+void read_volume(const InputOptions& options, Input& input) {
+  if (options.paths.size() != 1)
+    fail_usage("more than one input", options.paths[1], "give one label volume, or several .cnt files");
+  ReadOptions read;
+  read.spacing_mm = options.spacing_mm;
+  LabelVolume volume = read_label_volume(options.paths[0], read);
+  input.kind = volume.kind;
+  input.warnings = volume.warnings;
+  const std::vector<std::size_t> keep = resolve_labels(volume.labels, options.labels);
+  if (options.merge || keep.size() + 1 < volume.labels.size()) volume = select_labels(std::move(volume), keep, options.merge);
+  input.labels.assign(volume.labels.begin() + 1, volume.labels.end());
+  input.volume = std::move(volume);
+}
+
+}  // namespace
+
+Input read_input(const InputOptions& options) {
+  Input input;
+  if (options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
+  for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
+  if (is_contour_input(options.paths[0])) read_contours(options, input);
+  else read_volume(options, input);
+  return input;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,33 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contour/extract.h"
+#include "model/label_volume.h"
+#include "model/stack.h"
+
+namespace stackmesh {
+
+/// What to read, and which labels of it.
+struct InputOptions {
+  std::vector<std::string> paths;  ///< one volume, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
+  std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
+  std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all
+  bool merge = false;                               ///< selected labels become one
+};
+
+/// The input as read: a volume or, for contour files, sections.
+struct Input {
+  std::optional<LabelVolume> volume;
+  std::optional<Stack> sections;
+  std::string path, kind;
+  std::vector<LabelInfo> labels;  ///< without the background
+  std::vector<std::string> warnings;
+};
+
+/// Reads the input and keeps the labels that were asked for. @throws Error(input), Error(usage)
+Input read_input(const InputOptions& options);
+
+}  // namespace stackmesh

@@ -1,0 +1,309 @@
+#include "pipeline/mesh_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "pipeline/stage_clock.h"
+
+namespace stackmesh {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+class MeshRun {
+ public:
+  MeshRun(const MeshRunOptions& options, Progress& progress) : o_(options), clock_(progress, report_.stages), progress_(progress) {}
+
+  RunReport run() {
+    check_outputs();
+    report_.command = o_.command;
+    report_.version = o_.version;
+    report_.options = o_.option_texts;
+    report_.warnings = o_.notes;
+    clock_.run("read", [&] { read(); });
+    clock_.run("contours", [&] { make_sections(); });
+    clock_.run("stitch", [&] { stitch(); });
+    if (o_.target == Target::volume) clock_.run("volume", [&] { fill(); });
+    clock_.run("validate", [&] { validate(); });
+    const std::string refusal = verdict();
+    if (refusal.empty()) clock_.run("write", [&] { write(); });
+    report_.peak_rss_mb = peak_memory_mb();
+    write_reports();
+    files_.commit();
+    if (!refusal.empty()) throw Error(ErrorKind::no_result, refusal, report_.input.path, mend_);
+    return std::move(report_);
+  }
+
+ private:
+  void check_outputs() const {
+    for (const std::string& path : o_.outputs) {
+      const bool surface = is_surface_format(path), volume = is_volume_format(path);
+      if (!surface && !(volume && o_.target == Target::volume))
+        fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", path,
+                   o_.target == Target::volume ? "choose .vtu .msh .inp .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
+                                               : "choose .stl .ply .obj .off .vtp");
+    }
+    for (const std::string& path : o_.reports)
+      if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", path, "choose .json");
+    if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown --space '" + o_.space + "'", "", "choose lps or ras");
+  }
+
+  void warn(const std::string& text) { report_.warnings.push_back(text); }
+
+  void read() {
+    input_ = read_input(o_.input);
+    for (const std::string& w : input_.warnings) warn(w);
+    report_.input.path = input_.path;
+    report_.input.kind = input_.kind;
+    const bool anatomical = input_.volume && input_.volume->anatomical;
+    if (o_.space == "ras" && !anatomical)
+      fail_usage("--space ras needs an input with anatomical axes", input_.path, "leave --space out: coordinates are kept as they are");
+    world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;
+    report_.input.space = anatomical ? o_.space : "none";
+    for (const LabelInfo& l : input_.labels) {
+      LabelReport row;
+      row.label = l.number;
+      row.name = l.name;
+      report_.labels.push_back(row);
+    }
+    if (!input_.volume) return;
+    const LabelVolume& v = *input_.volume;
+    report_.input.dimensions = v.size;
+    report_.input.spacing_mm = v.spacing_mm;
+    const std::vector<std::size_t> counts = count_voxels(v);
+    for (std::size_t k = 1; k < v.labels.size(); ++k)
+      report_.labels[k - 1].input_volume_mm3 = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
+  }
+
+  void make_sections() {
+    if (input_.sections) {
+      stack_ = std::move(*input_.sections);
+      for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
+      report_.contours.vertices_traced = report_.contours.vertices;
+    } else {
+      ContourResult c = extract_sections(*input_.volume, o_.contours, progress_);
+      stack_ = std::move(c.stack);
+      axis_ = c.axis;
+      report_.contours.loops = c.loops;
+      report_.contours.vertices_traced = c.vertices_traced;
+      report_.contours.vertices = c.vertices;
+      if (o_.reports.empty()) input_.volume->voxels = {};  // no one asks for them any more
+    }
+    report_.input.axis = std::string(1, "xyz"[axis_]);
+    report_.input.sections = stack_.sections.size();
+  }
+
+  void stitch() {
+    StitchOptions options = o_.stitch;
+    options.threads = o_.threads;
+    std::vector<LabelInfo> known = {{0, ""}};
+    known.insert(known.end(), input_.labels.begin(), input_.labels.end());
+    for (const auto& [text, caps] : o_.label_caps_text)
+      for (std::size_t k : resolve_labels(known, text)) options.label_caps[known[k].number] = caps;
+    StitchResult result = stitch_sections(stack_, options, progress_);
+    for (const std::string& w : result.warnings) warn(w);
+    surface_ = std::move(result.complex);
+    frame_ = stack_.frame;
+    report_.stitched.added_points = result.added_points;
+    report_.stitched.vertices = surface_.points.size();
+    report_.stitched.triangles = surface_.triangles.size();
+    for (LabelReport& row : report_.labels) {
+      const auto it = result.caps.find(row.label);
+      if (it == result.caps.end()) continue;
+      row.cap_low = it->second.low;
+      row.cap_high = it->second.high;
+    }
+    stack_ = Stack();
+  }
+
+  /// The volume mesher works in stack coordinates; only what it gives is mapped to the world.
+  void fill() {
+    FillOptions options = o_.fill;
+    FillResult result = fill_volume(surface_, options);
+    if (!result.message.empty()) warn("volume mesher: " + result.message);
+    if (result.status == FillResult::Status::verified) {
+      report_.closure = "verified";
+      mesh_ = std::move(result.mesh);
+    } else {
+      report_.closure = "failed";
+      refusal_ = "the volume mesher did not fill the surface (" + result.message + ")";
+      offending_ = std::move(result.offending_triangles);
+    }
+  }
+
+  /// Stack coordinates to LPS; a mirrored frame turns triangles and tets inside out, so they are turned back.
+  void to_world() {
+    const bool mirrors = frame_.mirrors();
+    const auto turn = [&](std::vector<InterfaceTriangle>& triangles) {
+      if (mirrors)
+        for (InterfaceTriangle& t : triangles) std::swap(t.v[1], t.v[2]);
+    };
+    for (Vec3& p : surface_.points) p = frame_.to_world(p);
+    turn(surface_.triangles);
+    if (!mesh_) return;
+    for (Vec3& p : mesh_->points) p = frame_.to_world(p);
+    turn(mesh_->faces);
+    if (mirrors)
+      for (auto& t : mesh_->tets) std::swap(t[2], t[3]);
+  }
+
+  void validate() {
+    to_world();
+    SurfaceCheckOptions check;
+    check.threads = o_.threads;
+    report_.surface = check_surface(surface_, check);
+    report_.stitched.open_edges = report_.surface->open_edges;
+    report_.stitched.self_intersections = report_.surface->self_intersections;
+    for (LabelReport& row : report_.labels)
+      for (const LabelSurface& s : report_.surface->labels)
+        if (s.label == row.label) {
+          row.closed = s.closed;
+          row.components = s.components;
+          row.euler = s.euler;
+          row.surface_volume_mm3 = s.volume_mm3;
+        }
+    if (mesh_) {
+      report_.volume = check_volume(*mesh_);
+      for (LabelReport& row : report_.labels)
+        for (const auto& l : report_.volume->labels)
+          if (l.label == row.label) {
+            row.tets = l.tets;
+            row.tet_volume_mm3 = l.volume_mm3;
+          }
+    }
+    if (!o_.reports.empty() && input_.volume) judge_fidelity();
+    for (const LabelReport& row : report_.labels)
+      if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
+  }
+
+  void judge_fidelity() {
+    FidelityOptions options;
+    options.threads = o_.threads;
+    options.stack_axis = axis_;
+    for (const LabelFidelity& f : check_fidelity(surface_, *input_.volume, options))
+      for (LabelReport& row : report_.labels) {
+        if (row.label != f.label) continue;
+        row.dice = f.dice;
+        row.distance_mm = f.distance_mm;
+        row.reverse_distance_mm = f.reverse_distance_mm;
+        row.input_components = f.input_components;
+        if (f.missing_components > 0)
+          lost("label " + std::to_string(row.label) + ": " + std::to_string(f.missing_components) + " of " +
+               std::to_string(f.input_components) + " components are missing");
+        else if (!f.components_match)
+          lost("label " + std::to_string(row.label) + ": the surface's pieces do not match the input's components one to one");
+      }
+  }
+
+  void lost(const std::string& text) {
+    warn(text);
+    lost_detail_ = lost_detail_.empty() ? text : lost_detail_;
+  }
+
+  /// Why there is no valid result; empty if there is one.
+  std::string verdict() {
+    const SurfaceCheck& s = *report_.surface;
+    if (s.open_edges > 0 || s.self_intersections > 0) {
+      refusal_ = "the stitched surface has " + std::to_string(s.open_edges) + " open edges and " +
+                 std::to_string(s.self_intersections) + " self-intersections";
+      for (const auto& pair : s.intersecting_pairs) offending_.insert(offending_.end(), pair.begin(), pair.end());
+    } else if (report_.volume && (report_.volume->inverted > 0 || report_.volume->nonconforming_faces > 0)) {
+      refusal_ = "the volume mesh has " + std::to_string(report_.volume->inverted) + " inverted tetrahedra and " +
+                 std::to_string(report_.volume->nonconforming_faces) + " faces that do not conform";
+    }
+    if (!refusal_.empty()) {
+      report_.closure = o_.target == Target::volume ? "failed" : "skipped";
+      mend_ = "try --simplify 0, and report the input";
+      write_offending();
+    } else if (o_.strict && !lost_detail_.empty()) {
+      refusal_ = lost_detail_;
+      mend_ = "leave --strict out to accept it";
+    }
+    return refusal_;
+  }
+
+  void write_offending() {
+    if (offending_.empty() || (o_.outputs.empty() && o_.reports.empty())) return;
+    std::sort(offending_.begin(), offending_.end());
+    offending_.erase(std::unique(offending_.begin(), offending_.end()), offending_.end());
+    InterfaceComplex part;
+    part.points = surface_.points;
+    for (std::int32_t t : offending_) part.triangles.push_back(surface_.triangles[t]);
+    const std::string base = o_.outputs.empty() ? o_.reports[0] : o_.outputs[0];
+    const std::string path = base.substr(0, base.rfind('.')) + ".offending.vtp";
+    write_surface(files_, path, part, write_options());
+    warn("the offending triangles are in " + path);
+  }
+
+  MeshWriteOptions write_options() const {
+    MeshWriteOptions w = o_.write;
+    w.space = world_;
+    w.labels = input_.labels;
+    return w;
+  }
+
+  /// LPS to RAS turns half a revolution about z: exact, and triangles keep their sense.
+  static void to_ras(std::vector<Vec3>& points) {
+    for (Vec3& p : points) {
+      p.x = -p.x;
+      p.y = -p.y;
+    }
+  }
+
+  void write() {
+    if (world_ == WorldSpace::ras) {
+      to_ras(surface_.points);
+      if (mesh_) to_ras(mesh_->points);
+    }
+    for (const std::string& path : o_.outputs) {
+      if (is_surface_format(path)) {
+        write_surface(files_, path, surface_, write_options());
+        if (ends_with(path, ".stl")) check_rounded(path);
+      } else {
+        write_volume(files_, path, *mesh_, write_options());
+      }
+    }
+  }
+
+  /// STL keeps 24 bits of a coordinate: what is written is checked again.
+  void check_rounded(const std::string& path) {
+    InterfaceComplex rounded = surface_;
+    for (Vec3& p : rounded.points) p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    SurfaceCheckOptions check;
+    check.threads = o_.threads;
+    const SurfaceCheck s = check_surface(rounded, check);
+    if (s.self_intersections > 0)
+      warn(path + ": rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
+           " pairs of triangles touch or cross; the other formats keep the checked surface");
+  }
+
+  void write_reports() {
+    const std::string json = o_.reports.empty() ? "" : to_json(report_);
+    for (const std::string& path : o_.reports)
+      files_.write(path, [&](std::FILE* f) { std::fwrite(json.data(), 1, json.size(), f); });
+  }
+
+  const MeshRunOptions& o_;
+  RunReport report_;
+  StageClock clock_;
+  Progress& progress_;
+  AtomicFiles files_;
+  Input input_;
+  Stack stack_;
+  Frame frame_;
+  int axis_ = 2;
+  InterfaceComplex surface_;
+  std::optional<TetMesh> mesh_;
+  WorldSpace world_ = WorldSpace::lps;
+  std::vector<std::int32_t> offending_;
+  std::string refusal_, mend_, lost_detail_;
+};
+
+}  // namespace
+
+RunReport run_mesh(const MeshRunOptions& options, Progress& progress) { return MeshRun(options, progress).run(); }
+
+}  // namespace stackmesh

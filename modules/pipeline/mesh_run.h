@@ -1,0 +1,44 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/progress.h"
+#include "contour/extract.h"
+#include "meshio/write_mesh.h"
+#include "pipeline/input.h"
+#include "report/run_report.h"
+#include "stitch/stitch.h"
+#include "volume/fill_volume.h"
+
+namespace stackmesh {
+
+/// How far a run goes.
+enum class Target { surface, volume };
+
+struct MeshRunOptions {
+  Target target = Target::volume;
+  InputOptions input;
+  ContourOptions contours;
+  StitchOptions stitch;                           ///< label_caps are given by name or number in label_caps_text
+  std::vector<std::pair<std::string, Caps>> label_caps_text;
+  bool fill_default = true;                       ///< the volume mesher's default for the surface at hand
+  FillOptions fill;
+  std::string space = "lps";                      ///< "lps" or "ras"
+  std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format
+  MeshWriteOptions write;                         ///< space and labels are set by the run
+  bool strict = false;                            ///< a lost detail is an error
+  int threads = 0;
+  std::string command = "mesh", version;
+  std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report
+  std::vector<std::string> notes;                 ///< warnings of the caller, for the report
+};
+
+/// Slice stack to verified surface and volume mesh: read, contours, stitch, volume, validate, write. Everything
+/// that is written appears whole or not at all.
+/// @throws Error: input, output, usage; no_result after the report (and the offending triangles) were written.
+RunReport run_mesh(const MeshRunOptions& options, Progress& progress);
+
+}  // namespace stackmesh

@@ -1,0 +1,5 @@
+# The only place that orders stages.
+stackmesh_module(pipeline
+  SOURCES input.cpp mesh_run.cpp stage_clock.cpp
+  HEADERS input.h mesh_run.h
+  USES base model image contour stitch volume meshio validate report)

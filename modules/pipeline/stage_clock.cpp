@@ -1,0 +1,43 @@
+#include "pipeline/stage_clock.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace stackmesh {
+namespace {
+double cpu_seconds() {
+  double total = 0;
+  for (int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& t : {usage.ru_utime, usage.ru_stime}) total += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  }
+  return total;
+}
+}  // namespace
+
+void StageClock::begin(const std::string& name) {
+  stages_.push_back({name, 0, 0});
+  wall_ = std::chrono::steady_clock::now();
+  cpu_s_ = cpu_seconds();
+  progress_.begin(name);
+}
+
+void StageClock::end() {
+  stages_.back().wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  stages_.back().cpu_s = cpu_seconds() - cpu_s_;
+  progress_.end();
+}
+
+double peak_memory_mb() {
+  long peak = 0;
+  for (int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    peak = std::max(peak, usage.ru_maxrss);
+  }
+  return static_cast<double>(peak) / 1024;
+}
+
+}  // namespace stackmesh

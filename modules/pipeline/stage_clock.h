@@ -1,0 +1,37 @@
+#pragma once
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "report/run_report.h"
+
+namespace stackmesh {
+
+/// Times the stages of a run and tells the progress display of them.
+class StageClock {
+ public:
+  StageClock(Progress& progress, std::vector<StageTime>& stages) : progress_(progress), stages_(stages) {}
+  template <class F>
+  auto run(const std::string& name, F stage) {
+    begin(name);
+    struct End {
+      StageClock& clock;
+      ~End() { clock.end(); }
+    } at_end{*this};
+    return stage();
+  }
+
+ private:
+  void begin(const std::string& name);
+  void end();
+  Progress& progress_;
+  std::vector<StageTime>& stages_;
+  std::chrono::steady_clock::time_point wall_;
+  double cpu_s_ = 0;
+};
+
+/// Largest resident set of this process so far, or of a child that has ended, in MB.
+double peak_memory_mb();
+
+}  // namespace stackmesh

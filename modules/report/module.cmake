@@ -1,0 +1,6 @@
+# The run's figures as a report: JSON with the fields of docs/report.md.
+stackmesh_module(report
+  SOURCES run_report.cpp
+  HEADERS run_report.h
+  USES base model validate
+  PRIVATE nlohmann_json::nlohmann_json)

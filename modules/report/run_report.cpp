@@ -1,0 +1,110 @@
+#include "report/run_report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace stackmesh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json optional(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json distance(const std::optional<Distance>& d) {
+  if (!d) return nullptr;
+  return {{"mean", d->mean}, {"p95", d->p95}, {"max", d->max}};
+}
+
+Json surface(const RunReport& r) {
+  if (!r.surface) return nullptr;
+  const SurfaceCheck& s = *r.surface;
+  return {{"level", r.surface_level},
+          {"vertices", s.vertices},
+          {"triangles", s.triangles},
+          {"open_edges", s.open_edges},
+          {"self_intersections", s.self_intersections},
+          {"nonmanifold_edges", s.nonmanifold_edges},
+          {"angle_min_deg", s.angle_min_deg},
+          {"angle_p1_deg", s.angle_p1_deg},
+          {"angle_median_deg", s.angle_median_deg},
+          {"edge_min_mm", s.edge_min_mm},
+          {"edge_median_mm", s.edge_median_mm}};
+}
+
+Json volume(const RunReport& r) {
+  Json j = {{"closure", r.closure}};
+  if (!r.volume) return j;
+  const VolumeCheck& v = *r.volume;
+  return {{"nodes", v.nodes},
+          {"tets", v.tets},
+          {"inverted", v.inverted},
+          {"dihedral_min_deg", v.dihedral_min_deg},
+          {"dihedral_p1_deg", v.dihedral_p1_deg},
+          {"dihedral_max_deg", v.dihedral_max_deg},
+          {"radius_edge_max", v.radius_edge_max},
+          {"scaled_jacobian_min", v.scaled_jacobian_min},
+          {"nonconforming_faces", v.nonconforming_faces},
+          {"closure", r.closure}};
+}
+
+Json label(const LabelReport& l) {
+  return {{"label", l.label},
+          {"name", l.name},
+          {"closed", l.closed},
+          {"components", l.components},
+          {"input_components", optional(l.input_components)},
+          {"euler", l.euler},
+          {"input_volume_mm3", optional(l.input_volume_mm3)},
+          {"surface_volume_mm3", l.surface_volume_mm3},
+          {"tet_volume_mm3", optional(l.tet_volume_mm3)},
+          {"tets", optional(l.tets)},
+          {"dice", optional(l.dice)},
+          {"distance_mm", distance(l.distance_mm)},
+          {"reverse_distance_mm", distance(l.reverse_distance_mm)},
+          {"caps", {{"low", l.cap_low}, {"high", l.cap_high}}}};
+}
+
+}  // namespace
+
+std::string to_json(const RunReport& r) {
+  Json options = Json::object();
+  for (const auto& [name, value] : r.options) options[name] = value;
+  Json stages = Json::array();
+  for (const StageTime& s : r.stages) stages.push_back({{"name", s.name}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}});
+  Json labels = Json::array();
+  for (const LabelReport& l : r.labels) labels.push_back(label(l));
+  const bool grid = r.input.dimensions[0] > 0;
+  const Json j = {
+      {"schema", 1},
+      {"stackmesh", r.version},
+      {"command", r.command},
+      {"options", options},
+      {"input",
+       {{"path", r.input.path},
+        {"kind", r.input.kind},
+        {"dimensions", grid ? Json(r.input.dimensions) : Json(nullptr)},
+        {"spacing_mm", grid ? Json(r.input.spacing_mm) : Json(nullptr)},
+        {"axis", r.input.axis},
+        {"sections", r.input.sections},
+        {"space", r.input.space}}},
+      {"stages", stages},
+      {"peak_rss_mb", r.peak_rss_mb},
+      {"contours",
+       {{"loops", r.contours.loops}, {"vertices_traced", r.contours.vertices_traced}, {"vertices", r.contours.vertices}}},
+      {"stitched",
+       {{"vertices", r.stitched.vertices},
+        {"triangles", r.stitched.triangles},
+        {"open_edges", r.stitched.open_edges},
+        {"self_intersections", r.stitched.self_intersections},
+        {"added_points", r.stitched.added_points}}},
+      {"surface", surface(r)},
+      {"volume", volume(r)},
+      {"labels", labels},
+      {"warnings", r.warnings}};
+  // File names need not be valid UTF-8: what is not is replaced.
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/geometry.h"
+#include "validate/check_fidelity.h"
+#include "validate/check_surface.h"
+#include "validate/check_volume.h"
+
+namespace stackmesh {
+
+struct StageTime {
+  std::string name;
+  double wall_s = 0, cpu_s = 0;
+};
+
+/// A row of the report: one label of the input.
+struct LabelReport {
+  Label label = 0;
+  std::string name;
+  bool closed = false;
+  int components = 0;
+  std::optional<int> input_components;
+  long euler = 0;
+  std::optional<double> input_volume_mm3;  ///< voxels; none for contour input
+  double surface_volume_mm3 = 0;
+  std::optional<double> tet_volume_mm3;
+  std::optional<std::size_t> tets;
+  std::optional<double> dice;
+  std::optional<Distance> distance_mm, reverse_distance_mm;
+  std::string cap_low, cap_high;  ///< "flat" or "round"
+};
+
+/// Everything a run reports (docs/report.md lists the fields of the JSON form).
+struct RunReport {
+  std::string version, command;
+  std::vector<std::pair<std::string, std::string>> options;  ///< as given or defaulted
+  struct {
+    std::string path, kind;
+    std::array<int, 3> dimensions = {0, 0, 0};          ///< 0: no grid (contours)
+    std::array<double, 3> spacing_mm = {0, 0, 0};
+    std::string axis = "z", space = "lps";
+    std::size_t sections = 0;
+  } input;
+  std::vector<StageTime> stages;
+  double peak_rss_mb = 0;
+  struct {
+    std::size_t loops = 0, vertices_traced = 0, vertices = 0;
+  } contours;
+  struct {
+    std::size_t vertices = 0, triangles = 0, open_edges = 0, self_intersections = 0, added_points = 0;
+  } stitched;
+  std::string surface_level = "stitched";
+  std::optional<SurfaceCheck> surface;
+  std::optional<VolumeCheck> volume;
+  std::string closure = "skipped";  ///< verified, failed or skipped
+  std::vector<LabelReport> labels;
+  std::vector<std::string> warnings;
+};
+
+/// The report as JSON text (schema 1).
+std::string to_json(const RunReport& report);
+
+}  // namespace stackmesh
