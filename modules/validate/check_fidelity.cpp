@@ -1,0 +1,221 @@
+#include "validate/check_fidelity.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "validate/boundaries.h"
+#include "validate/box_tree.h"
+#include "validate/grid_walk.h"
+#include "validate/label_runs.h"
+#include "validate/statistics.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr std::size_t kChunk = 1024;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct Corners {
+  Vec3 a, b, c;
+};
+
+double segment_distance2(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 e = b - a;
+  const double length2 = dot(e, e);
+  const double s = length2 > 0 ? std::clamp(dot(p - a, e) / length2, 0.0, 1.0) : 0;
+  const Vec3 d = p - (a + s * e);
+  return dot(d, d);
+}
+
+double triangle_distance2(const Vec3& p, const Corners& t) {
+  const Vec3 n = cross(t.b - t.a, t.c - t.a);
+  const double area2 = dot(n, n);
+  if (area2 > 0 && dot(cross(t.b - t.a, p - t.a), n) >= 0 && dot(cross(t.c - t.b, p - t.b), n) >= 0 &&
+      dot(cross(t.a - t.c, p - t.c), n) >= 0) {
+    const double height = dot(p - t.a, n);
+    return height * height / area2;
+  }
+  return std::min({segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
+}
+
+/// An axis-parallel rectangle: a box of no thickness.
+struct Rectangle {
+  Vec3 low, high;
+};
+
+double rectangle_distance2(const Vec3& p, const Rectangle& r) {
+  const double x = std::max({0.0, r.low.x - p.x, p.x - r.high.x}), y = std::max({0.0, r.low.y - p.y, p.y - r.high.y}),
+               z = std::max({0.0, r.low.z - p.z, p.z - r.high.z});
+  return x * x + y * y + z * z;
+}
+
+/// Distances from points to the nearest of some items; the points follow each other closely.
+template <class Item, class Distance2>
+Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items, const std::vector<Box>& boxes, int threads,
+                 Distance2 distance2) {
+  if (points.empty() || items.empty()) return {kNaN, kNaN, kNaN};
+  const BoxTree tree(boxes);
+  std::vector<double> distances(points.size());
+  parallel_for((points.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
+    std::int32_t hint = -1;
+    for (std::size_t i = chunk * kChunk; i < std::min(points.size(), (chunk + 1) * kChunk); ++i) {
+      double best = 0;
+      hint = tree.nearest(points[i], hint, [&](std::int32_t k) { return distance2(points[i], items[k]); }, &best);
+      distances[i] = std::sqrt(best);
+    }
+  });
+  Distance d;
+  for (const double x : distances) d.mean += x / static_cast<double>(distances.size()), d.max = std::max(d.max, x);
+  d.p95 = percentile(distances, 0.95);
+  return d;
+}
+
+std::uint64_t hash(std::uint64_t x) {  // splitmix64
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// Centres of in-plane faces, at most about `most`, chosen by a hash of their number so that no pattern survives.
+std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStrip>& strips, std::size_t most, std::uint64_t seed) {
+  std::size_t count = 0;
+  for (const FaceStrip& s : strips)
+    if (s.axis != 2) count += static_cast<std::size_t>(s.end - s.begin);
+  const bool all = count <= most;
+  const std::uint64_t threshold =
+      all ? 0 : static_cast<std::uint64_t>(18446744073709551615.0 * (static_cast<double>(most) / static_cast<double>(count)));
+  std::vector<Vec3> points;
+  std::size_t number = 0;
+  for (const FaceStrip& s : strips) {
+    if (s.axis == 2) continue;
+    for (std::int32_t w = s.begin; w < s.end; ++w)
+      if (all || hash(seed ^ hash(number++)) < threshold)
+        points.push_back(runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v));
+  }
+  return points;
+}
+
+std::vector<Rectangle> rectangles_of(const LabelRuns& runs, const std::vector<FaceStrip>& strips) {
+  std::vector<Rectangle> rectangles;
+  rectangles.reserve(strips.size());
+  for (const FaceStrip& s : strips) {
+    double low[3] = {s.begin - 0.5, s.u - 0.5, s.v - 0.5}, high[3] = {s.end - 0.5, s.u + 0.5, s.v + 0.5};
+    (s.sign > 0 ? low : high)[s.axis] = (s.sign > 0 ? high : low)[s.axis];
+    rectangles.push_back({runs.place(low[0], low[1], low[2]), runs.place(high[0], high[1], high[2])});
+  }
+  return rectangles;
+}
+
+/// Points spread by area: one in each of equal shares of it, placed in their triangle by a low-discrepancy sequence.
+std::vector<Vec3> sample_surface(const std::vector<Corners>& triangles, std::size_t most) {
+  const std::size_t count = std::min(most, std::max<std::size_t>(2000, 2 * triangles.size()));
+  double total = 0;
+  for (const Corners& t : triangles) total += norm(cross(t.b - t.a, t.c - t.a));
+  std::vector<Vec3> points;
+  if (!(total > 0) || count == 0) return points;
+  double passed = 0;
+  for (const Corners& t : triangles) {
+    passed += norm(cross(t.b - t.a, t.c - t.a));
+    while (points.size() < count && (static_cast<double>(points.size()) + 0.5) / static_cast<double>(count) * total <= passed) {
+      const double n = static_cast<double>(points.size());
+      double x = std::fmod(0.5 + n * 0.75487766624669276, 1), y = std::fmod(0.5 + n * 0.56984029099805327, 1);
+      if (x + y > 1) x = 1 - x, y = 1 - y;
+      points.push_back(t.a + (x * (t.b - t.a) + y * (t.c - t.a)));
+    }
+  }
+  return points;
+}
+
+void match_components(const LabelRuns& runs, const Boundaries& boundaries, const GridWalk& walk,
+                      const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
+  std::vector<int> met_by_component(runs.component_label.size(), 0), met_by_solid(boundaries.piece_row.size(), 0);
+  for (const auto& [component, solid] : walk.meets) ++met_by_component[component], ++met_by_solid[solid];
+  std::vector<char> one_to_one(rows.size() + 1, 1);
+  for (std::size_t c = 0; c < met_by_component.size(); ++c) {
+    LabelFidelity& row = rows[runs.component_label[c] - 1];
+    ++row.input_components;
+    row.missing_components += met_by_component[c] == 0;
+    if (met_by_component[c] != 1) one_to_one[runs.component_label[c]] = 0;
+  }
+  for (std::size_t p = 0; p < met_by_solid.size(); ++p) {
+    const std::int32_t label = row_label[boundaries.piece_row[p]];
+    if (label < 0) continue;
+    if (boundaries.piece_volume_mm3[p] > 0) ++rows[label - 1].components;
+    if (met_by_solid[p] > 1) one_to_one[label] = 0;
+  }
+  for (std::size_t l = 0; l < rows.size(); ++l)
+    rows[l].components_match = one_to_one[l + 1] && rows[l].components == rows[l].input_components;
+}
+
+}  // namespace
+
+std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const LabelVolume& volume,
+                                          const FidelityOptions& options) {
+  if (options.stack_axis < 0 || options.stack_axis > 2)
+    fail_usage("stacking axis " + std::to_string(options.stack_axis), "fidelity check", "use 0, 1 or 2");
+  const std::size_t labels = volume.labels.size();
+  const Boundaries boundaries = find_boundaries(complex, 0);
+  const LabelRuns runs = find_runs(volume, options.stack_axis, options.threads);
+
+  std::vector<std::int32_t> row_label, label_row(labels, -1);
+  for (std::size_t row = 0; row < boundaries.labels.size(); ++row) {
+    row_label.push_back(-1);
+    for (std::size_t l = 1; l < labels; ++l)
+      if (volume.labels[l].number == boundaries.labels[row].label) {
+        row_label.back() = static_cast<std::int32_t>(l);
+        label_row[l] = static_cast<std::int32_t>(row);
+      }
+  }
+  std::vector<Vec3> points;
+  points.reserve(complex.points.size());
+  for (const Vec3& p : complex.points) points.push_back(runs.to_grid(p));
+
+  std::vector<LabelFidelity> rows(labels > 0 ? labels - 1 : 0);
+  {
+    const GridWalk walk = walk_grid(complex, boundaries, runs, points, row_label, labels, options.threads);
+    for (std::size_t l = 1; l < labels; ++l) {
+      LabelFidelity& row = rows[l - 1];
+      row.label = volume.labels[l].number;
+      row.input_voxels = walk.input[l];
+      row.mesh_voxels = walk.mesh[l];
+      const std::size_t sum = walk.input[l] + walk.mesh[l];
+      row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
+    }
+    match_components(runs, boundaries, walk, row_label, rows);
+  }
+
+  std::vector<std::vector<std::int32_t>> of_row(boundaries.labels.size());
+  for (std::size_t t = 0; t < boundaries.row.size(); ++t)
+    for (const std::int32_t row : boundaries.row[t])
+      if (row >= 0) of_row[row].push_back(static_cast<std::int32_t>(t));
+  const std::vector<std::vector<FaceStrip>> faces = find_faces(runs, labels, options.threads);
+  for (std::size_t l = 1; l < labels; ++l) {
+    LabelFidelity& row = rows[l - 1];
+    std::vector<Corners> triangles;
+    std::vector<Box> boxes;
+    if (label_row[l] >= 0)
+      for (const std::int32_t t : of_row[label_row[l]]) {
+        const auto& v = complex.triangles[t].v;
+        triangles.push_back({points[v[0]], points[v[1]], points[v[2]]});
+        boxes.emplace_back();
+        for (const std::int32_t p : v) boxes.back().add(points[p]);
+      }
+    const std::vector<Vec3> from_faces = sample_faces(runs, faces[l], options.face_samples, options.seed);
+    row.distance_samples = from_faces.size();
+    row.distance_mm = measure(from_faces, triangles, boxes, options.threads, triangle_distance2);
+
+    const std::vector<Rectangle> rectangles = rectangles_of(runs, faces[l]);
+    boxes.assign(rectangles.size(), {});
+    for (std::size_t i = 0; i < rectangles.size(); ++i) boxes[i].add(rectangles[i].low), boxes[i].add(rectangles[i].high);
+    const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
+    row.reverse_distance_samples = from_surface.size();
+    row.reverse_distance_mm = measure(from_surface, rectangles, boxes, options.threads, rectangle_distance2);
+  }
+  return rows;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,190 @@
+#include "validate/check_volume.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "validate/exact.h"
+#include "validate/statistics.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void check_input(const TetMesh& mesh) {
+  const auto fine = [n = static_cast<std::int64_t>(mesh.points.size())](std::int32_t v) { return v >= 0 && v < n; };
+  if (mesh.labels.size() != mesh.tets.size())
+    fail_input(std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.tets.size()) + " tets",
+               "tetrahedral mesh", "write the mesh again");
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
+      fail_input("a tet names a point that does not exist", "tet " + std::to_string(t), "write the mesh again");
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t)
+    if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
+      fail_input("a face names a point that does not exist", "face " + std::to_string(t), "write the mesh again");
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    if (!std::isfinite(mesh.points[p].x) || !std::isfinite(mesh.points[p].y) || !std::isfinite(mesh.points[p].z))
+      fail_input("a coordinate is not a finite number", "point " + std::to_string(p), "write the mesh again");
+}
+
+struct Shape {
+  double dihedral_min_deg, dihedral_max_deg, radius_edge, scaled_jacobian, volume_mm3;
+};
+
+Shape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = c - a, w = d - a, e = c - b, f = d - b, g = d - c;
+  const double det = dot(u, cross(v, w));
+  const double lu = norm(u), lv = norm(v), lw = norm(w), le = norm(e), lf = norm(f), lg = norm(g);
+  Shape s{0, 180, kInfinity, 0, det / 6};
+  const double product = std::max({lu * lv * lw, lu * le * lf, lv * le * lg, lw * lf * lg});
+  if (product > 0) s.scaled_jacobian = std::sqrt(2.0) * det / product;
+  if (det != 0) {
+    const Vec3 to_centre = dot(u, u) * cross(v, w) + dot(v, v) * cross(w, u) + dot(w, w) * cross(u, v);
+    s.radius_edge = norm(to_centre) / (2 * std::abs(det)) / std::min({lu, lv, lw, le, lf, lg});
+  }
+  Vec3 n[4] = {cross(e, f), cross(w, v), cross(u, w), cross(v, u)};
+  double smallest = 1, largest = -1;  // cosines of the dihedrals, largest dihedral first
+  for (Vec3& m : n) {
+    const double length = norm(m);
+    if (length == 0) return s;
+    m = (1 / length) * m;
+  }
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j) {
+      const double cosine = -dot(n[i], n[j]);
+      smallest = std::min(smallest, cosine), largest = std::max(largest, cosine);
+    }
+  s.dihedral_min_deg = kDegrees * std::acos(std::clamp(largest, -1.0, 1.0));
+  s.dihedral_max_deg = kDegrees * std::acos(std::clamp(smallest, -1.0, 1.0));
+  return s;
+}
+
+void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
+  std::vector<Shape> shapes(mesh.tets.size());
+  std::vector<char> inverted(mesh.tets.size());
+  constexpr std::size_t kChunk = 1 << 13;
+  parallel_for((shapes.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
+    for (std::size_t t = chunk * kChunk; t < std::min(shapes.size(), (chunk + 1) * kChunk); ++t) {
+      const auto& v = mesh.tets[t];
+      const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]], &d = mesh.points[v[3]];
+      shapes[t] = shape_of(a, b, c, d);
+      inverted[t] = exact_orientation(a, b, c, d) <= 0;
+    }
+  });
+  std::map<Label, std::pair<std::size_t, long double>> labels;
+  std::vector<double> dihedrals(shapes.size());
+  for (std::size_t t = 0; t < shapes.size(); ++t) {
+    const Shape& s = shapes[t];
+    auto& label = labels[mesh.labels[t]];
+    ++label.first;
+    label.second += s.volume_mm3;
+    check.inverted += inverted[t];
+    dihedrals[t] = s.dihedral_min_deg;
+    check.dihedral_below_10 += s.dihedral_min_deg < 10;
+    check.dihedral_max_deg = std::max(check.dihedral_max_deg, s.dihedral_max_deg);
+    check.radius_edge_max = std::max(check.radius_edge_max, s.radius_edge);
+    check.scaled_jacobian_min = t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
+  }
+  check.dihedral_p1_deg = percentile(dihedrals, 0.01);
+  check.dihedral_min_deg = percentile(dihedrals, 0);
+  for (const auto& [label, sum] : labels) check.labels.push_back({label, sum.first, static_cast<double>(sum.second)});
+}
+
+/// A triangle with its points ascending. `even`: as written it runs like its ascending points, so that for a face
+/// of a tet, seen from outside, the tet lies below the ascending triangle.
+struct Face {
+  std::int32_t middle, high;
+  Label below, above;  // of a tet: its own label twice
+  bool of_tet, even;
+};
+
+class ConformityCheck {
+ public:
+  ConformityCheck(const TetMesh& mesh, std::size_t limit, VolumeCheck& check) : mesh_(mesh), limit_(limit), check_(check) {}
+
+  void run() {
+    std::vector<std::int64_t> start(mesh_.points.size() + 1, 0);
+    each([&](std::int32_t low, const Face&) { ++start[low + 1]; });
+    for (std::size_t p = 0; p < mesh_.points.size(); ++p) start[p + 1] += start[p];
+    std::vector<Face> faces(start.back());
+    each([&](std::int32_t low, const Face& face) { faces[start[low]++] = face; });
+    std::int64_t begin = 0;
+    for (std::size_t low = 0; low < mesh_.points.size(); ++low) {
+      const std::int64_t end = start[low];
+      std::stable_sort(faces.begin() + begin, faces.begin() + end, [](const Face& a, const Face& b) {
+        return a.middle != b.middle ? a.middle < b.middle : a.high < b.high;
+      });
+      for (std::int64_t i = begin, j; i < end; i = j) {
+        for (j = i; j < end && faces[j].middle == faces[i].middle && faces[j].high == faces[i].high; ++j) {
+        }
+        if (conforming(&faces[i], &faces[i] + (j - i))) continue;
+        ++check_.nonconforming_faces;
+        if (check_.nonconforming_list.size() < limit_)
+          check_.nonconforming_list.push_back({static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
+      }
+      begin = end;
+    }
+    check_.conforms = check_.nonconforming_faces == 0;
+  }
+
+ private:
+  template <class Visit>
+  void add(std::array<std::int32_t, 3> v, bool of_tet, Label below, Label above, Visit& visit) {
+    bool even = true;
+    const auto order = [&](int i, int j) {
+      if (v[i] > v[j]) std::swap(v[i], v[j]), even = !even;
+    };
+    order(0, 1), order(1, 2), order(0, 1);
+    visit(v[0], Face{v[1], v[2], even ? below : above, even ? above : below, of_tet, even});
+  }
+
+  template <class Visit>
+  void each(Visit visit) {
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      const auto& [a, b, c, d] = mesh_.tets[t];
+      const Label l = mesh_.labels[t];
+      add({b, c, d}, true, l, l, visit);
+      add({a, d, c}, true, l, l, visit);
+      add({a, b, d}, true, l, l, visit);
+      add({a, c, b}, true, l, l, visit);
+    }
+    for (const auto& f : mesh_.faces) add(f.v, false, f.below, f.above, visit);
+  }
+
+  /// One triangle: the tets and the interface faces on it.
+  static bool conforming(const Face* begin, const Face* end) {
+    Label below = 0, above = 0;
+    int tets_below = 0, tets_above = 0, interfaces = 0;
+    const Face* interface = nullptr;
+    for (const Face* f = begin; f != end; ++f) {
+      if (!f->of_tet) interface = f, ++interfaces;
+      if (f->of_tet && f->even) below = f->below, ++tets_below;
+      if (f->of_tet && !f->even) above = f->above, ++tets_above;
+    }
+    if (tets_below > 1 || tets_above > 1 || tets_below + tets_above == 0) return false;
+    if (below == above) return interfaces == 0;
+    return interfaces == 1 && interface->below == below && interface->above == above;
+  }
+
+  const TetMesh& mesh_;
+  const std::size_t limit_;
+  VolumeCheck& check_;
+};
+
+}  // namespace
+
+VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options) {
+  check_input(mesh);
+  VolumeCheck check;
+  check.nodes = mesh.points.size();
+  check.tets = mesh.tets.size();
+  measure(mesh, options.threads, check);
+  ConformityCheck(mesh, options.list_limit, check).run();
+  return check;
+}
+
+}  // namespace stackmesh
