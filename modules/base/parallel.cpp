@@ -14,12 +14,13 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
-  tbb::task_arena arena(n);
-  arena.execute([&] {
+  const auto loop = [&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const auto& range) {
       for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
     });
-  });
+  };
+  if (n == tbb::info::default_concurrency()) loop();  // the arena that is there already
+  else tbb::task_arena(n).execute(loop);
 }
 
 }  // namespace stackmesh
