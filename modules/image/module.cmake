@@ -11,8 +11,8 @@ foreach(target IN LISTS image_imported)
   endif()
 endforeach()
 stackmesh_module(image
-  SOURCES read_labels.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp masks.cpp
-          palette.cpp file_names.cpp
+  SOURCES read_labels.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp png_check.cpp
+          masks.cpp palette.cpp file_names.cpp
   HEADERS read_labels.h read_contours.h
   USES base model
   PRIVATE ${ITK_LIBRARIES} opencv_core opencv_imgcodecs ZLIB::ZLIB)

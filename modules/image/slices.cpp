@@ -1,77 +1,40 @@
 #include "image/slices.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 
 #include "base/error.h"
 #include "image/file_names.h"
 #include "image/palette.h"
+#include "image/png_check.h"
+#include "image/quiet.h"
 
 namespace stackmesh {
 namespace {
 
 constexpr const char* again = "copy or export the file again";
 
-/// OpenCV reports to its log and to std::cerr; while one of these lives it does not.
-class Quiet {
+/// Silences OpenCV's log, whose level is global.
+class SilentLog {
  public:
-  Quiet()
-      : level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)),
-        saved_(std::cerr.rdbuf(sink_.rdbuf())) {}
-  ~Quiet() {
-    std::cerr.rdbuf(saved_);
-    cv::utils::logging::setLogLevel(level_);
-  }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  SilentLog() : level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~SilentLog() { cv::utils::logging::setLogLevel(level_); }
+  SilentLog(const SilentLog&) = delete;
+  SilentLog& operator=(const SilentLog&) = delete;
 
  private:
   cv::utils::logging::LogLevel level_;
-  std::ostringstream sink_;
-  std::streambuf* saved_;
 };
 
 std::vector<unsigned char> read_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail_input("cannot open the file", path, "check that you may read it");
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-std::uint32_t big_endian(const unsigned char* p) {
-  return static_cast<std::uint32_t>(p[0]) << 24 | static_cast<std::uint32_t>(p[1]) << 16 |
-         static_cast<std::uint32_t>(p[2]) << 8 | p[3];
-}
-
-/// Walks the chunks of a PNG: OpenCV returns a partly filled image for a file that was cut.
-void check_png(const std::vector<unsigned char>& bytes, const std::string& path) {
-  static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  if (bytes.size() < 8 || std::memcmp(bytes.data(), signature, 8) != 0)
-    fail_input("this is no PNG file, or it is damaged", path, again);
-  std::size_t at = 8;
-  while (true) {
-    if (bytes.size() - at < 12) fail_input("the PNG file is truncated", path, again);
-    const std::size_t length = big_endian(&bytes[at]);
-    if (bytes.size() - at - 12 < length) fail_input("the PNG file is truncated", path, again);
-    const unsigned char* type = &bytes[at + 4];
-    if (crc32(crc32(0, nullptr, 0), type, static_cast<uInt>(length + 4)) != big_endian(type + 4 + length))
-      fail_input("the PNG file is damaged (check sum)", path, again);
-    if (at == 8 && (length != 13 || std::memcmp(type, "IHDR", 4) != 0))
-      fail_input("the PNG file is damaged (no header)", path, again);
-    if (at == 8 && type[4 + 9] == 3)
-      fail_input("the PNG has a colour palette, so its pixels are colours and not label numbers", path,
-                 "save it as 8- or 16-bit greyscale with the label as grey value");
-    if (std::memcmp(type, "IEND", 4) == 0) return;
-    at += 12 + length;
-  }
 }
 
 /// One channel of a grey image; colour is refused unless it is grey in truth.
@@ -170,9 +133,7 @@ class Stacker {
 
 void add_file(Stacker& stack, const std::string& path) {
   if (format_of(path) == FileFormat::png) {
-    const std::vector<unsigned char> bytes = read_bytes(path);
-    check_png(bytes, path);
-    const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+    const cv::Mat image = cv::imdecode(checked_png(read_bytes(path), path), cv::IMREAD_UNCHANGED);
     if (image.empty()) fail_input("the PNG file is damaged", path, again);
     stack.add(image, path, -1);
     return;
@@ -244,6 +205,7 @@ LabelVolume read_slices(const std::vector<std::string>& files,
   std::string current;
   try {
     const Quiet quiet;
+    const SilentLog silent;
     for (const std::string& file : files) {
       current = file;
       add_file(stack, file);

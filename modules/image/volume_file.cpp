@@ -12,42 +12,20 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <memory>
-#include <mutex>
 #include <sstream>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/deflate_check.h"
 #include "image/palette.h"
+#include "image/quiet.h"
 #include "image/volume_header.h"
 
 namespace stackmesh {
 namespace {
 
 constexpr const char* again = "copy or export the file again";
-
-/// ITK's readers write to std::cerr; while one of these lives they do not. One reader at a time.
-class Quiet {
- public:
-  Quiet() : lock_(mutex()), saved_(std::cerr.rdbuf(sink_.rdbuf())) {
-    itk::Object::GlobalWarningDisplayOff();
-    nifti_set_debug_level(0);
-  }
-  ~Quiet() { std::cerr.rdbuf(saved_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  std::lock_guard<std::mutex> lock_;
-  std::ostringstream sink_;
-  std::streambuf* saved_;
-};
 
 /// Asked for x.nii.gz, niftilib takes the voxels of an x.nii or x.img that lies beside it. Where there is
 /// one, the file is read through a link in a folder of its own.
@@ -300,6 +278,8 @@ LabelVolume read_volume_file(const std::string& path, FileFormat format) {
   volume.warnings = facts.warnings;
   try {
     const Quiet quiet;
+    itk::Object::GlobalWarningDisplayOff();
+    nifti_set_debug_level(0);
     const itk::ImageIOBase::Pointer io = make_reader(format);
     std::unique_ptr<const AloneNifti> alone;
     if (format == FileFormat::nifti) alone = std::make_unique<const AloneNifti>(path);

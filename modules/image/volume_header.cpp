@@ -55,7 +55,10 @@ std::vector<unsigned char> read_start(const std::string& path, unsigned count, b
   std::vector<unsigned char> bytes(count);
   const int got = gzread(file, bytes.data(), count);
   compressed = gzdirect(file) == 0;
+  int code = Z_OK;
+  gzerror(file, &code);
   gzclose(file);
+  if (got < 0 && code == Z_DATA_ERROR) damaged("the file's compressed data are damaged", path);
   bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   return bytes;
 }
@@ -504,6 +507,8 @@ HeaderFacts check_metaimage(const std::string& path) {
   };
   facts.compressed = yes("compresseddata");
   const std::string stored = header.get("compresseddatasize");
+  if (facts.compressed && local && stored.empty())  // ITK would give a volume of zeros
+    damaged("the header is damaged: the voxels are compressed, but 'CompressedDataSize' is missing", path);
   if (facts.compressed && !stored.empty()) {
     const double bytes = to_number(stored, "CompressedDataSize", path);
     if (!(bytes >= 1 && bytes < 1e18)) damaged("the header is damaged: 'CompressedDataSize'", path);
