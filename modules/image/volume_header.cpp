@@ -108,7 +108,7 @@ int nifti_bytes(int datatype) {
 }
 
 /// Reads the two orientations of a NIfTI header. ITK takes the sform where its code is 1 or it is alone, else
-/// the qform, and straightens a sheared sform in silence.
+/// the qform. A sheared sform it refuses without a reason, or drops for the qform in silence.
 void check_nifti_forms(const std::vector<unsigned char>& h, bool swap, HeaderFacts& facts,
                        const std::string& path) {
   const int qform = number_at<std::int16_t>(h, 252, swap), sform = number_at<std::int16_t>(h, 254, swap);
