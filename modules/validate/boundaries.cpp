@@ -35,12 +35,14 @@ class BoundaryFinder {
     for (std::size_t t = 0; t < complex_.triangles.size(); ++t)
       for (const std::int32_t v : complex_.triangles[t].v)
         if (v < 0 || v >= n)
-          fail_input("a triangle names a point that does not exist", "triangle " + std::to_string(t) + ", point " + std::to_string(v),
+          fail_input("a triangle names a point that does not exist",
+                     "triangle " + std::to_string(t) + ", point " + std::to_string(v),
                      "write the mesh again");
     for (std::size_t p = 0; p < complex_.points.size(); ++p) {
       const Vec3& v = complex_.points[p];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-        fail_input("a coordinate is not a finite number", "point " + std::to_string(p), "write the mesh again");
+        fail_input("a coordinate is not a finite number", "point " + std::to_string(p),
+                   "write the mesh again");
     }
   }
 
@@ -54,7 +56,9 @@ class BoundaryFinder {
     out_.labels.resize(labels.size());
     for (std::size_t i = 0; i < labels.size(); ++i) out_.labels[i].label = labels[i];
     const auto row_of = [&](Label l) -> std::int32_t {
-      return l == 0 ? -1 : static_cast<std::int32_t>(std::lower_bound(labels.begin(), labels.end(), l) - labels.begin());
+      return l == 0 ? -1
+                    : static_cast<std::int32_t>(std::lower_bound(labels.begin(), labels.end(), l) -
+                                                labels.begin());
     };
     out_.row.assign(complex_.triangles.size(), {-1, -1});
     for (std::size_t t = 0; t < complex_.triangles.size(); ++t) {
@@ -108,7 +112,9 @@ class BoundaryFinder {
     for (std::size_t low = 0; low < n; ++low) {
       const std::int64_t end = start[low];
       std::sort(items.begin() + begin, items.begin() + end, [](const Item& a, const Item& b) {
-        return a.high != b.high ? a.high < b.high : a.triangle != b.triangle ? a.triangle < b.triangle : a.corner < b.corner;
+        return a.high != b.high           ? a.high < b.high
+               : a.triangle != b.triangle ? a.triangle < b.triangle
+                                          : a.corner < b.corner;
       });
       for (std::int64_t i = begin; i < end;) {
         group.clear();
@@ -118,7 +124,8 @@ class BoundaryFinder {
           const int sign = v[items[i].corner] == static_cast<std::int32_t>(low) ? 1 : -1;
           for (int s = 0; s < 2; ++s)
             if (const std::int32_t row = out_.row[items[i].triangle][s]; row >= 0)
-              group.push_back({row, 2 * items[i].triangle + s, v[(items[i].corner + 2) % 3], s == 0 ? sign : -sign});
+              group.push_back(
+                  {row, 2 * items[i].triangle + s, v[(items[i].corner + 2) % 3], s == 0 ? sign : -sign});
         }
         edge(static_cast<std::int32_t>(low), high, group);
       }
@@ -128,7 +135,8 @@ class BoundaryFinder {
 
   void edge(std::int32_t low, std::int32_t high, std::vector<EdgeSide>& group) {
     out_.edge_lengths_mm.push_back(norm(complex_.points[high] - complex_.points[low]));
-    std::stable_sort(group.begin(), group.end(), [](const EdgeSide& a, const EdgeSide& b) { return a.row < b.row; });
+    std::stable_sort(group.begin(), group.end(),
+                     [](const EdgeSide& a, const EdgeSide& b) { return a.row < b.row; });
     bool open = false, nonmanifold = false;
     for (std::size_t i = 0, j = 0; i < group.size(); i = j) {
       int sum = 0;
@@ -144,8 +152,8 @@ class BoundaryFinder {
     if (open && out_.open_edge_list.size() < limit_) out_.open_edge_list.push_back({low, high});
   }
 
-  /// Sorts the sides counter-clockwise around low -> high; from a side whose solid follows it, the next one bounds
-  /// the same solid.
+  /// Sorts the sides counter-clockwise around low -> high; from a side whose solid follows it, the next one
+  /// bounds the same solid.
   void pair_across_solid(std::int32_t low, std::int32_t high, EdgeSide* begin, EdgeSide* end) {
     const auto& p = complex_.points;
     const std::int32_t reference = begin->apex;

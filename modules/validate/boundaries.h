@@ -10,27 +10,30 @@ namespace stackmesh {
 /// The boundary of one label: the oriented sides of triangles that face out of it.
 struct LabelBoundary {
   Label label = 0;
-  bool closed = true;                        ///< every directed edge is matched by its reverse, with multiplicity
+  bool closed = true;  ///< every directed edge is matched by its reverse, with multiplicity
   long vertices = 0, edges = 0, triangles = 0;
   double volume_mm3 = 0, area_mm2 = 0;
-  int outer_pieces = 0;                      ///< pieces that enclose a positive volume
+  int outer_pieces = 0;  ///< pieces that enclose a positive volume
 };
 
-/// The boundaries of all labels but 0, and the pieces they fall into: sides joined over edges; where more than two
-/// of a label meet at an edge, across the solid between them, so that parts that merely touch stay apart.
+/// The boundaries of all labels but 0, and the pieces they fall into: sides joined over edges; where more
+/// than two of a label meet at an edge, across the solid between them, so that parts that merely touch stay
+/// apart.
 struct Boundaries {
-  std::vector<LabelBoundary> labels;                    ///< ascending by label
-  std::vector<std::array<std::int32_t, 2>> row;         ///< per triangle: index into `labels` of below, above; -1: none
-  std::vector<std::array<std::int32_t, 2>> piece;       ///< per triangle: piece of its below and above side; -1: none
-  std::vector<double> piece_volume_mm3;                 ///< signed: negative for the wall of a cavity
+  std::vector<LabelBoundary> labels;  ///< ascending by label
+  std::vector<std::array<std::int32_t, 2>>
+      row;  ///< per triangle: index into `labels` of below, above; -1: none
+  std::vector<std::array<std::int32_t, 2>>
+      piece;                             ///< per triangle: piece of its below and above side; -1: none
+  std::vector<double> piece_volume_mm3;  ///< signed: negative for the wall of a cavity
   std::vector<std::int32_t> piece_row;
   std::size_t open_edges = 0, nonmanifold_edges = 0;
   std::vector<std::array<std::int32_t, 2>> open_edge_list;  ///< the first `limit`, ascending
-  std::vector<double> edge_lengths_mm;                  ///< one per undirected edge
+  std::vector<double> edge_lengths_mm;                      ///< one per undirected edge
 };
 
-/// A triangle between a label and itself bounds nothing. @throws Error(input) for an index without a point or a
-/// coordinate that is not finite.
+/// A triangle between a label and itself bounds nothing. @throws Error(input) for an index without a point or
+/// a coordinate that is not finite.
 Boundaries find_boundaries(const InterfaceComplex& complex, std::size_t limit);
 
 /// Sets of integers 0 .. n-1 that only merge; the smallest member names the set.

@@ -23,7 +23,8 @@ struct Box {
   }
   /// Squared distance to p, 0 inside; infinite for an empty box.
   double distance2(const Vec3& p) const {
-    const double x = std::max({0.0, low[0] - p.x, p.x - high[0]}), y = std::max({0.0, low[1] - p.y, p.y - high[1]}),
+    const double x = std::max({0.0, low[0] - p.x, p.x - high[0]}),
+                 y = std::max({0.0, low[1] - p.y, p.y - high[1]}),
                  z = std::max({0.0, low[2] - p.z, p.z - high[2]});
     return x * x + y * y + z * z;
   }
@@ -36,13 +37,13 @@ class BoxTree {
 
   std::size_t leaves() const { return used_leaves_; }
 
-  /// Calls visit(i, j) for the pairs of items with meeting boxes, i in the given leaf, j in it or a later one:
-  /// over all leaves, each pair once.
+  /// Calls visit(i, j) for the pairs of items with meeting boxes, i in the given leaf, j in it or a later
+  /// one: over all leaves, each pair once.
   template <class Visit>
   void pairs_of_leaf(std::size_t leaf, Visit visit) const;
 
-  /// The item nearest to p: distance2(item) must be no less than the squared distance to its box. `hint` is an
-  /// item to try first (-1: none). Returns -1 when there is none.
+  /// The item nearest to p: distance2(item) must be no less than the squared distance to its box. `hint` is
+  /// an item to try first (-1: none). Returns -1 when there is none.
   template <class Distance2>
   std::int32_t nearest(const Vec3& p, std::int32_t hint, Distance2 distance2, double* best2) const;
 
@@ -50,8 +51,8 @@ class BoxTree {
   static constexpr std::size_t kLeafItems = 4;
   std::size_t width_ = 1, used_leaves_ = 0;  // leaves of the full tree, leaves that hold items
   int depth_ = 0;
-  std::vector<Box> nodes_;        // children of n: 2n and 2n + 1; root 1
-  std::vector<Box> boxes_;        // of items, in order
+  std::vector<Box> nodes_;  // children of n: 2n and 2n + 1; root 1
+  std::vector<Box> boxes_;  // of items, in order
   std::vector<std::int32_t> items_;
 };
 
@@ -100,7 +101,8 @@ std::int32_t BoxTree::nearest(const Vec3& p, std::int32_t hint, Distance2 distan
     const Entry e = stack[--top];
     if (!(e.d2 < bound)) continue;
     if (e.node >= width_) {
-      const std::size_t from = (e.node - width_) * kLeafItems, to = std::min(from + kLeafItems, items_.size());
+      const std::size_t from = (e.node - width_) * kLeafItems,
+                        to = std::min(from + kLeafItems, items_.size());
       for (std::size_t i = from; i < to; ++i) {
         if (!(boxes_[i].distance2(p) < bound)) continue;
         const double d2 = distance2(items_[i]);
@@ -108,7 +110,8 @@ std::int32_t BoxTree::nearest(const Vec3& p, std::int32_t hint, Distance2 distan
       }
       continue;
     }
-    Entry near = {2 * e.node, nodes_[2 * e.node].distance2(p)}, far = {2 * e.node + 1, nodes_[2 * e.node + 1].distance2(p)};
+    Entry near = {2 * e.node, nodes_[2 * e.node].distance2(p)},
+          far = {2 * e.node + 1, nodes_[2 * e.node + 1].distance2(p)};
     if (far.d2 < near.d2) std::swap(near, far);
     stack[top++] = far;
     stack[top++] = near;

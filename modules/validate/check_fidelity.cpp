@@ -38,7 +38,8 @@ double triangle_distance2(const Vec3& p, const Corners& t) {
     const double height = dot(p - t.a, n);
     return height * height / area2;
   }
-  return std::min({segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
+  return std::min(
+      {segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
 }
 
 /// An axis-parallel rectangle: a box of no thickness.
@@ -47,15 +48,16 @@ struct Rectangle {
 };
 
 double rectangle_distance2(const Vec3& p, const Rectangle& r) {
-  const double x = std::max({0.0, r.low.x - p.x, p.x - r.high.x}), y = std::max({0.0, r.low.y - p.y, p.y - r.high.y}),
+  const double x = std::max({0.0, r.low.x - p.x, p.x - r.high.x}),
+               y = std::max({0.0, r.low.y - p.y, p.y - r.high.y}),
                z = std::max({0.0, r.low.z - p.z, p.z - r.high.z});
   return x * x + y * y + z * z;
 }
 
 /// Distances from points to the nearest of some items; the points follow each other closely.
 template <class Item, class Distance2>
-Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items, const std::vector<Box>& boxes, int threads,
-                 Distance2 distance2) {
+Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items,
+                 const std::vector<Box>& boxes, int threads, Distance2 distance2) {
   if (points.empty() || items.empty()) return {kNaN, kNaN, kNaN};
   const BoxTree tree(boxes);
   std::vector<double> distances(points.size());
@@ -63,12 +65,14 @@ Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items
     std::int32_t hint = -1;
     for (std::size_t i = chunk * kChunk; i < std::min(points.size(), (chunk + 1) * kChunk); ++i) {
       double best = 0;
-      hint = tree.nearest(points[i], hint, [&](std::int32_t k) { return distance2(points[i], items[k]); }, &best);
+      hint = tree.nearest(
+          points[i], hint, [&](std::int32_t k) { return distance2(points[i], items[k]); }, &best);
       distances[i] = std::sqrt(best);
     }
   });
   Distance d;
-  for (const double x : distances) d.mean += x / static_cast<double>(distances.size()), d.max = std::max(d.max, x);
+  for (const double x : distances)
+    d.mean += x / static_cast<double>(distances.size()), d.max = std::max(d.max, x);
   d.p95 = percentile(distances, 0.95);
   return d;
 }
@@ -80,21 +84,26 @@ std::uint64_t hash(std::uint64_t x) {  // splitmix64
   return x ^ (x >> 31);
 }
 
-/// Centres of in-plane faces, at most about `most`, chosen by a hash of their number so that no pattern survives.
-std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStrip>& strips, std::size_t most, std::uint64_t seed) {
+/// Centres of in-plane faces, at most about `most`, chosen by a hash of their number so that no pattern
+/// survives.
+std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStrip>& strips, std::size_t most,
+                               std::uint64_t seed) {
   std::size_t count = 0;
   for (const FaceStrip& s : strips)
     if (s.axis != 2) count += static_cast<std::size_t>(s.end - s.begin);
   const bool all = count <= most;
   const std::uint64_t threshold =
-      all ? 0 : static_cast<std::uint64_t>(18446744073709551615.0 * (static_cast<double>(most) / static_cast<double>(count)));
+      all ? 0
+          : static_cast<std::uint64_t>(18446744073709551615.0 *
+                                       (static_cast<double>(most) / static_cast<double>(count)));
   std::vector<Vec3> points;
   std::size_t number = 0;
   for (const FaceStrip& s : strips) {
     if (s.axis == 2) continue;
     for (std::int32_t w = s.begin; w < s.end; ++w)
       if (all || hash(seed ^ hash(number++)) < threshold)
-        points.push_back(runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v));
+        points.push_back(
+            runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v));
   }
   return points;
 }
@@ -110,7 +119,8 @@ std::vector<Rectangle> rectangles_of(const LabelRuns& runs, const std::vector<Fa
   return rectangles;
 }
 
-/// Points spread by area: one in each of equal shares of it, placed in their triangle by a low-discrepancy sequence.
+/// Points spread by area: one in each of equal shares of it, placed in their triangle by a low-discrepancy
+/// sequence.
 std::vector<Vec3> sample_surface(const std::vector<Corners>& triangles, std::size_t most) {
   const std::size_t count = std::min(most, std::max<std::size_t>(2000, 2 * triangles.size()));
   double total = 0;
@@ -120,7 +130,8 @@ std::vector<Vec3> sample_surface(const std::vector<Corners>& triangles, std::siz
   double passed = 0;
   for (const Corners& t : triangles) {
     passed += norm(cross(t.b - t.a, t.c - t.a));
-    while (points.size() < count && (static_cast<double>(points.size()) + 0.5) / static_cast<double>(count) * total <= passed) {
+    while (points.size() < count &&
+           (static_cast<double>(points.size()) + 0.5) / static_cast<double>(count) * total <= passed) {
       const double n = static_cast<double>(points.size());
       double x = std::fmod(0.5 + n * 0.75487766624669276, 1), y = std::fmod(0.5 + n * 0.56984029099805327, 1);
       if (x + y > 1) x = 1 - x, y = 1 - y;
@@ -132,7 +143,8 @@ std::vector<Vec3> sample_surface(const std::vector<Corners>& triangles, std::siz
 
 void match_components(const LabelRuns& runs, const Boundaries& boundaries, const GridWalk& walk,
                       const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
-  std::vector<int> met_by_component(runs.component_label.size(), 0), met_by_solid(boundaries.piece_row.size(), 0);
+  std::vector<int> met_by_component(runs.component_label.size(), 0),
+      met_by_solid(boundaries.piece_row.size(), 0);
   for (const auto& [component, solid] : walk.meets) ++met_by_component[component], ++met_by_solid[solid];
   std::vector<char> one_to_one(rows.size() + 1, 1);
   for (std::size_t c = 0; c < met_by_component.size(); ++c) {
@@ -210,7 +222,8 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
 
     const std::vector<Rectangle> rectangles = rectangles_of(runs, faces[l]);
     boxes.assign(rectangles.size(), {});
-    for (std::size_t i = 0; i < rectangles.size(); ++i) boxes[i].add(rectangles[i].low), boxes[i].add(rectangles[i].high);
+    for (std::size_t i = 0; i < rectangles.size(); ++i)
+      boxes[i].add(rectangles[i].low), boxes[i].add(rectangles[i].high);
     const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
     row.reverse_distance_samples = from_surface.size();
     row.reverse_distance_mm = measure(from_surface, rectangles, boxes, options.threads, rectangle_distance2);

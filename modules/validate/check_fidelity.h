@@ -16,31 +16,31 @@ struct Distance {
 /// How well a complex stands for one label of the input.
 struct LabelFidelity {
   Label label = 0;
-  std::size_t input_voxels = 0;      ///< voxel centres of the label in the input
-  std::size_t mesh_voxels = 0;       ///< voxel centres of the grid that lie in the label in the mesh
-  double dice = 0;                   ///< of those two sets; NaN when both are empty
-  Distance distance_mm;              ///< in-plane voxel-face centres, at section heights, to the label's surface
-  Distance reverse_distance_mm;      ///< points spread over the label's surface to its voxel faces
+  std::size_t input_voxels = 0;  ///< voxel centres of the label in the input
+  std::size_t mesh_voxels = 0;   ///< voxel centres of the grid that lie in the label in the mesh
+  double dice = 0;               ///< of those two sets; NaN when both are empty
+  Distance distance_mm;          ///< in-plane voxel-face centres, at section heights, to the label's surface
+  Distance reverse_distance_mm;  ///< points spread over the label's surface to its voxel faces
   std::size_t distance_samples = 0, reverse_distance_samples = 0;
-  int input_components = 0;          ///< 6-connected components of the voxels
-  int components = 0;                ///< solid pieces of the mesh (see LabelSurface)
-  /// Each input component shares correctly labelled voxel centres with exactly one solid piece, and each piece with
-  /// exactly one component.
+  int input_components = 0;  ///< 6-connected components of the voxels
+  int components = 0;        ///< solid pieces of the mesh (see LabelSurface)
+  /// Each input component shares correctly labelled voxel centres with exactly one solid piece, and each
+  /// piece with exactly one component.
   bool components_match = false;
   std::size_t missing_components = 0;  ///< input components none of whose centres is in the label in the mesh
 };
 
 struct FidelityOptions {
-  int threads = 0;                      ///< 0: all of the machine; the result does not depend on it
-  int stack_axis = 2;                   ///< axis of the volume along which the sections are stacked: 0, 1 or 2
-  std::size_t face_samples = 60000;     ///< about the most voxel faces a label is measured from
+  int threads = 0;                   ///< 0: all of the machine; the result does not depend on it
+  int stack_axis = 2;                ///< axis of the volume along which the sections are stacked: 0, 1 or 2
+  std::size_t face_samples = 60000;  ///< about the most voxel faces a label is measured from
   std::size_t surface_samples = 60000;  ///< most points on a label's surface; two a triangle, at least 2,000
   std::uint64_t seed = 1;               ///< of the choice among too many voxel faces
 };
 
-/// Compares a complex, in mm of the volume's own world frame (LPS), with the labels it was made from; a row for
-/// each label of the volume but the background, in their order. @throws Error(input) as check_surface does;
-/// Error(usage) for a wrong axis.
+/// Compares a complex, in mm of the volume's own world frame (LPS), with the labels it was made from; a row
+/// for each label of the volume but the background, in their order. @throws Error(input) as check_surface
+/// does; Error(usage) for a wrong axis.
 std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const LabelVolume& volume,
                                           const FidelityOptions& options = {});
 

@@ -16,18 +16,24 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_input(const TetMesh& mesh) {
-  const auto fine = [n = static_cast<std::int64_t>(mesh.points.size())](std::int32_t v) { return v >= 0 && v < n; };
+  const auto fine = [n = static_cast<std::int64_t>(mesh.points.size())](std::int32_t v) {
+    return v >= 0 && v < n;
+  };
   if (mesh.labels.size() != mesh.tets.size())
-    fail_input(std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.tets.size()) + " tets",
-               "tetrahedral mesh", "write the mesh again");
+    fail_input(
+        std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.tets.size()) + " tets",
+        "tetrahedral mesh", "write the mesh again");
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
-      fail_input("a tet names a point that does not exist", "tet " + std::to_string(t), "write the mesh again");
+      fail_input("a tet names a point that does not exist", "tet " + std::to_string(t),
+                 "write the mesh again");
   for (std::size_t t = 0; t < mesh.faces.size(); ++t)
     if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
-      fail_input("a face names a point that does not exist", "face " + std::to_string(t), "write the mesh again");
+      fail_input("a face names a point that does not exist", "face " + std::to_string(t),
+                 "write the mesh again");
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
-    if (!std::isfinite(mesh.points[p].x) || !std::isfinite(mesh.points[p].y) || !std::isfinite(mesh.points[p].z))
+    if (!std::isfinite(mesh.points[p].x) || !std::isfinite(mesh.points[p].y) ||
+        !std::isfinite(mesh.points[p].z))
       fail_input("a coordinate is not a finite number", "point " + std::to_string(p), "write the mesh again");
 }
 
@@ -70,7 +76,8 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
   parallel_for((shapes.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
     for (std::size_t t = chunk * kChunk; t < std::min(shapes.size(), (chunk + 1) * kChunk); ++t) {
       const auto& v = mesh.tets[t];
-      const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]], &d = mesh.points[v[3]];
+      const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]],
+                 &d = mesh.points[v[3]];
       shapes[t] = shape_of(a, b, c, d);
       inverted[t] = exact_orientation(a, b, c, d) <= 0;
     }
@@ -87,15 +94,17 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
     check.dihedral_below_10 += s.dihedral_min_deg < 10;
     check.dihedral_max_deg = std::max(check.dihedral_max_deg, s.dihedral_max_deg);
     check.radius_edge_max = std::max(check.radius_edge_max, s.radius_edge);
-    check.scaled_jacobian_min = t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
+    check.scaled_jacobian_min =
+        t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
   }
   check.dihedral_p1_deg = percentile(dihedrals, 0.01);
   check.dihedral_min_deg = percentile(dihedrals, 0);
-  for (const auto& [label, sum] : labels) check.labels.push_back({label, sum.first, static_cast<double>(sum.second)});
+  for (const auto& [label, sum] : labels)
+    check.labels.push_back({label, sum.first, static_cast<double>(sum.second)});
 }
 
-/// A triangle with its points ascending. `even`: as written it runs like its ascending points, so that for a face
-/// of a tet, seen from outside, the tet lies below the ascending triangle.
+/// A triangle with its points ascending. `even`: as written it runs like its ascending points, so that for a
+/// face of a tet, seen from outside, the tet lies below the ascending triangle.
 struct Face {
   std::int32_t middle, high;
   Label below, above;  // of a tet: its own label twice
@@ -104,7 +113,8 @@ struct Face {
 
 class ConformityCheck {
  public:
-  ConformityCheck(const TetMesh& mesh, std::size_t limit, VolumeCheck& check) : mesh_(mesh), limit_(limit), check_(check) {}
+  ConformityCheck(const TetMesh& mesh, std::size_t limit, VolumeCheck& check)
+      : mesh_(mesh), limit_(limit), check_(check) {}
 
   void run() {
     std::vector<std::int64_t> start(mesh_.points.size() + 1, 0);
@@ -124,7 +134,8 @@ class ConformityCheck {
         if (conforming(&faces[i], &faces[i] + (j - i))) continue;
         ++check_.nonconforming_faces;
         if (check_.nonconforming_list.size() < limit_)
-          check_.nonconforming_list.push_back({static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
+          check_.nonconforming_list.push_back(
+              {static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
       }
       begin = end;
     }

@@ -7,7 +7,9 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-Kernel::Point_3 cgal(const Vec3& p) { return {p.x, p.y, p.z}; }
+Kernel::Point_3 cgal(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
 
 /// Below this a product may have underflowed, and a relative error bound says nothing.
 constexpr double kTiny = 1e-250;
@@ -30,7 +32,8 @@ int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
 }
 
 int exact_orientation_2d(double ax, double ay, double bx, double by, double cx, double cy) {
-  const double left = (bx - ax) * (cy - ay), right = (by - ay) * (cx - ax), size = std::abs(left) + std::abs(right);
+  const double left = (bx - ax) * (cy - ay), right = (by - ay) * (cx - ax),
+               size = std::abs(left) + std::abs(right);
   const double det = left - right;
   if (size > kTiny && size < 1e300 && std::abs(det) > 1e-15 * size) return det > 0 ? 1 : -1;
   return static_cast<int>(

@@ -51,7 +51,8 @@ class Walker {
     DisjointSets solids(boundaries_.piece_row.size());
     for (const Pairs& pairs : same_solid)
       for (const auto& p : pairs) solids.join(p.first, p.second);
-    for (std::size_t p = 0; p < boundaries_.piece_row.size(); ++p) walk.solid.push_back(solids.find(static_cast<std::int32_t>(p)));
+    for (std::size_t p = 0; p < boundaries_.piece_row.size(); ++p)
+      walk.solid.push_back(solids.find(static_cast<std::int32_t>(p)));
     for (const Pairs& pairs : meets)
       for (const auto& p : pairs) walk.meets.push_back({p.first, walk.solid[p.second]});
     make_unique(walk.meets);
@@ -101,8 +102,8 @@ class Walker {
     each([&](std::int32_t v, std::int32_t t) { triangles_[at[v]++] = t; });
   }
 
-  /// Twice the signed area of (p, q, (y, z)) in the plane of U and V. Computed the same way for both triangles at an edge, so
-  /// that a line passes exactly one of them.
+  /// Twice the signed area of (p, q, (y, z)) in the plane of U and V. Computed the same way for both
+  /// triangles at an edge, so that a line passes exactly one of them.
   double beside(std::int32_t p, std::int32_t q, double y, double z) const {
     const bool swapped = p > q;
     if (swapped) std::swap(p, q);
@@ -124,7 +125,8 @@ class Walker {
     if (low > high) return;
     const double slack = 1e-6 * (1 + std::abs(low) + std::abs(high));
     const std::int32_t first = static_cast<std::int32_t>(std::max(0.0, std::ceil(low - slack - kOffset[1])));
-    const std::int32_t last = static_cast<std::int32_t>(std::min(runs_.size[1] - 1.0, std::floor(high + slack - kOffset[1])));
+    const std::int32_t last =
+        static_cast<std::int32_t>(std::min(runs_.size[1] - 1.0, std::floor(high + slack - kOffset[1])));
     const double w0 = points_[v[0]].x, w1 = points_[v[1]].x, w2 = points_[v[2]].x;
     for (std::int32_t u = first; u <= last; ++u) {
       const double y = u + kOffset[1];
@@ -133,19 +135,23 @@ class Walker {
       if (in_a != in_b || in_b != in_c) continue;
       const double sum = a + b + c;
       const double w = sum != 0 ? (a * w0 + b * w1 + c * w2) / sum : (w0 + w1 + w2) / 3;
-      out.push_back({u, std::clamp(w, std::min({w0, w1, w2}), std::max({w0, w1, w2})), t, in_a != left_handed_});
+      out.push_back(
+          {u, std::clamp(w, std::min({w0, w1, w2}), std::max({w0, w1, w2})), t, in_a != left_handed_});
     }
   }
 
   void walk_plane(std::int32_t v, PlaneResult& result) const {
     std::vector<Crossing> crossings;
-    for (std::size_t k = start_[v]; k < start_[v + 1]; ++k) cross_triangle(triangles_[k], v + kOffset[2], crossings);
+    for (std::size_t k = start_[v]; k < start_[v + 1]; ++k)
+      cross_triangle(triangles_[k], v + kOffset[2], crossings);
     std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
       return a.u != b.u ? a.u < b.u : a.w != b.w ? a.w < b.w : a.triangle < b.triangle;
     });
     for (auto begin = crossings.begin(); begin != crossings.end();) {
-      const auto end = std::find_if(begin, crossings.end(), [&](const Crossing& c) { return c.u != begin->u; });
-      walk_line(static_cast<std::size_t>(v) * runs_.size[1] + begin->u, &*begin, &*begin + (end - begin), result);
+      const auto end =
+          std::find_if(begin, crossings.end(), [&](const Crossing& c) { return c.u != begin->u; });
+      walk_line(static_cast<std::size_t>(v) * runs_.size[1] + begin->u, &*begin, &*begin + (end - begin),
+                result);
       begin = end;
     }
   }
@@ -157,11 +163,13 @@ class Walker {
     double since = 0;
     std::size_t run = runs_.start[line];
     for (Crossing* c = begin; c != end; ++c) {
-      // At the tip of a wedge rounding may swap two crossings: take the one that continues the label we are in.
+      // At the tip of a wedge rounding may swap two crossings: take the one that continues the label we are
+      // in.
       for (Crossing* d = c; row_before(*c) != row && d != end && d->w - c->w < 1e-3; ++d)
         if (row_before(*d) == row) std::rotate(c, d, d + 1);
       if (row >= 0) {
-        if (row_before(*c) == row) add(result.same_solid, piece, boundaries_.piece[c->triangle][c->upwards ? 0 : 1]);
+        if (row_before(*c) == row)
+          add(result.same_solid, piece, boundaries_.piece[c->triangle][c->upwards ? 0 : 1]);
         count(line, run, row, piece, since, c->w, result);
       }
       row = boundaries_.row[c->triangle][c->upwards ? 1 : 0];
@@ -176,7 +184,8 @@ class Walker {
     const std::int32_t label = row_label_[row];
     if (label < 0) return;
     const auto centre = [&](double w) {
-      return static_cast<std::int32_t>(std::clamp(std::ceil(w - kOffset[0]), 0.0, static_cast<double>(runs_.size[0])));
+      return static_cast<std::int32_t>(
+          std::clamp(std::ceil(w - kOffset[0]), 0.0, static_cast<double>(runs_.size[0])));
     };
     const std::int32_t first = centre(from), last = centre(to);
     if (first >= last) return;
@@ -184,7 +193,8 @@ class Walker {
     while (run < runs_.start[line + 1] && runs_.runs[run].end <= first) ++run;
     for (std::size_t k = run; k < runs_.start[line + 1] && runs_.runs[k].begin < last; ++k) {
       if (runs_.runs[k].label != label) continue;
-      result.both[label] += static_cast<std::size_t>(std::min(last, runs_.runs[k].end) - std::max(first, runs_.runs[k].begin));
+      result.both[label] +=
+          static_cast<std::size_t>(std::min(last, runs_.runs[k].end) - std::max(first, runs_.runs[k].begin));
       add(result.meets, runs_.runs[k].component, piece);
     }
   }
@@ -203,8 +213,8 @@ class Walker {
 }  // namespace
 
 GridWalk walk_grid(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
-                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels,
-                   int threads) {
+                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label,
+                   std::size_t labels, int threads) {
   return Walker(complex, boundaries, runs, grid_points, row_label, labels).run(threads);
 }
 

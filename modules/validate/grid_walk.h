@@ -11,16 +11,19 @@ namespace stackmesh {
 
 /// What walking every grid line through a complex tells, by index into volume.labels.
 struct GridWalk {
-  std::vector<std::size_t> input, mesh, both;  ///< voxel centres of the label: in the input, in the mesh, in both
-  std::vector<std::int32_t> solid;             ///< per piece of the boundaries: the smallest piece of the same solid
-  std::vector<std::pair<std::int32_t, std::int32_t>> meets;  ///< (input component, solid) that share a voxel centre
+  std::vector<std::size_t> input, mesh,
+      both;                         ///< voxel centres of the label: in the input, in the mesh, in both
+  std::vector<std::int32_t> solid;  ///< per piece of the boundaries: the smallest piece of the same solid
+  std::vector<std::pair<std::int32_t, std::int32_t>>
+      meets;  ///< (input component, solid) that share a voxel centre
 };
 
-/// Follows each line of voxel centres, from crossing to crossing, through the labels of the complex. The lines are
-/// a tiny fraction of a pixel beside the centres, so that they hit no edge. `grid_points`: the complex's points
-/// along W, U, V (LabelRuns::to_grid); `row_label`: index into volume.labels for each row of the boundaries, or -1.
+/// Follows each line of voxel centres, from crossing to crossing, through the labels of the complex. The
+/// lines are a tiny fraction of a pixel beside the centres, so that they hit no edge. `grid_points`: the
+/// complex's points along W, U, V (LabelRuns::to_grid); `row_label`: index into volume.labels for each row of
+/// the boundaries, or -1.
 GridWalk walk_grid(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
-                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels,
-                   int threads);
+                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label,
+                   std::size_t labels, int threads);
 
 }  // namespace stackmesh

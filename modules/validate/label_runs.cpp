@@ -27,13 +27,15 @@ void number_components(LabelRuns& r) {
   const std::size_t lines = r.start.size() - 1, in_plane = static_cast<std::size_t>(r.size[1]);
   for (std::size_t line = 0; line < lines; ++line) {
     const auto join = [&](std::size_t i, std::size_t j) {
-      if (r.runs[i].label == r.runs[j].label) sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+      if (r.runs[i].label == r.runs[j].label)
+        sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
     };
     if (line % in_plane > 0) overlaps(r, line, line - 1, join);
     if (line >= in_plane) overlaps(r, line, line - in_plane, join);
   }
   for (std::size_t i = 0; i < r.runs.size(); ++i) {
-    const std::int32_t root = sets.find(static_cast<std::int32_t>(i));  // the smallest member: numbered before
+    const std::int32_t root =
+        sets.find(static_cast<std::int32_t>(i));  // the smallest member: numbered before
     if (root == static_cast<std::int32_t>(i)) {
       r.runs[i].component = static_cast<std::int32_t>(r.component_label.size());
       r.component_label.push_back(r.runs[i].label);
@@ -47,8 +49,11 @@ void number_components(LabelRuns& r) {
 
 LabelRuns find_runs(const LabelVolume& volume, int stack_axis, int threads) {
   LabelRuns r;
-  r.axis = stack_axis == 0 ? std::array<int, 3>{1, 2, 0} : stack_axis == 1 ? std::array<int, 3>{0, 2, 1} : std::array<int, 3>{0, 1, 2};
-  const std::size_t strides[3] = {1, static_cast<std::size_t>(volume.size[0]), static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
+  r.axis = stack_axis == 0   ? std::array<int, 3>{1, 2, 0}
+           : stack_axis == 1 ? std::array<int, 3>{0, 2, 1}
+                             : std::array<int, 3>{0, 1, 2};
+  const std::size_t strides[3] = {1, static_cast<std::size_t>(volume.size[0]),
+                                  static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
   std::size_t stride[3];
   for (int k = 0; k < 3; ++k) {
     r.size[k] = volume.size[r.axis[k]];
@@ -57,7 +62,8 @@ LabelRuns find_runs(const LabelVolume& volume, int stack_axis, int threads) {
     stride[k] = strides[r.axis[k]];
   }
   r.origin_mm = volume.origin_mm;
-  const std::size_t planes = static_cast<std::size_t>(r.size[2]), in_plane = static_cast<std::size_t>(r.size[1]);
+  const std::size_t planes = static_cast<std::size_t>(r.size[2]),
+                    in_plane = static_cast<std::size_t>(r.size[1]);
   std::vector<std::vector<LabelRun>> of_plane(planes);
   r.start.assign(planes * in_plane + 1, 0);
   parallel_for(planes, threads, [&](std::size_t v) {
@@ -103,7 +109,9 @@ std::vector<std::vector<FaceStrip>> find_faces(const LabelRuns& r, std::size_t l
         const std::int8_t axis = side < 2 ? 1 : 2, sign = side % 2 == 0 ? -1 : 1;
         const std::int32_t at = (axis == 1 ? u : v) + sign;
         const bool border = at < 0 || at >= (axis == 1 ? in_plane : planes);
-        const std::size_t other = border ? 0 : axis == 1 ? line + sign : line + static_cast<std::ptrdiff_t>(sign) * in_plane;
+        const std::size_t other = border      ? 0
+                                  : axis == 1 ? line + sign
+                                              : line + static_cast<std::ptrdiff_t>(sign) * in_plane;
         std::size_t j = border ? 0 : r.start[other];
         const std::size_t last = border ? 0 : r.start[other + 1];
         for (std::size_t i = r.start[line]; i < r.start[line + 1]; ++i) {

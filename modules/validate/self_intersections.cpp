@@ -36,7 +36,8 @@ SelfIntersections find_self_intersections(const InterfaceComplex& complex, int t
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (flat[t]) {
       ++result.degenerate;
-      if (result.pairs.size() < limit) result.pairs.push_back({static_cast<std::int32_t>(t), static_cast<std::int32_t>(t)});
+      if (result.pairs.size() < limit)
+        result.pairs.push_back({static_cast<std::int32_t>(t), static_cast<std::int32_t>(t)});
     }
   result.count = result.degenerate;
 

@@ -12,7 +12,9 @@ struct Corners {
   Vec3 a, b, c;
 };
 
-double max_abs(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double max_abs(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 // ---- In a plane: the coordinate is dropped in which the triangle keeps an area.
 
@@ -20,8 +22,12 @@ struct Flat {
   double x, y;
 };
 
-Flat drop(const Vec3& p, int axis) { return axis == 0 ? Flat{p.y, p.z} : axis == 1 ? Flat{p.z, p.x} : Flat{p.x, p.y}; }
-int turn(Flat a, Flat b, Flat c) { return exact_orientation_2d(a.x, a.y, b.x, b.y, c.x, c.y); }
+Flat drop(const Vec3& p, int axis) {
+  return axis == 0 ? Flat{p.y, p.z} : axis == 1 ? Flat{p.z, p.x} : Flat{p.x, p.y};
+}
+int turn(Flat a, Flat b, Flat c) {
+  return exact_orientation_2d(a.x, a.y, b.x, b.y, c.x, c.y);
+}
 
 int drop_axis(const Corners& t) {
   const Vec3 n = cross(t.b - t.a, t.c - t.a);
@@ -35,7 +41,8 @@ int drop_axis(const Corners& t) {
 }
 
 bool on_box(Flat p, Flat a, Flat b) {
-  return p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x) && p.y >= std::min(a.y, b.y) && p.y <= std::max(a.y, b.y);
+  return p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x) && p.y >= std::min(a.y, b.y) &&
+         p.y <= std::max(a.y, b.y);
 }
 
 bool segments_meet(Flat p, Flat q, Flat a, Flat b) {
@@ -52,14 +59,17 @@ bool inside(Flat p, Flat a, Flat b, Flat c) {
 
 bool coplanar_segment_meets(const Vec3& p3, const Vec3& q3, const Corners& t) {
   const int axis = drop_axis(t);
-  const Flat p = drop(p3, axis), q = drop(q3, axis), a = drop(t.a, axis), b = drop(t.b, axis), c = drop(t.c, axis);
+  const Flat p = drop(p3, axis), q = drop(q3, axis), a = drop(t.a, axis), b = drop(t.b, axis),
+             c = drop(t.c, axis);
   return inside(p, a, b, c) || inside(q, a, b, c) || segments_meet(p, q, a, b) || segments_meet(p, q, b, c) ||
          segments_meet(p, q, c, a);
 }
 
 // ---- In space.
 
-int side(const Corners& t, const Vec3& p) { return exact_orientation(t.a, t.b, t.c, p); }
+int side(const Corners& t, const Vec3& p) {
+  return exact_orientation(t.a, t.b, t.c, p);
+}
 
 /// `sp`, `sq`: the sides of the plane of t on which p and q lie.
 bool segment_meets(const Vec3& p, const Vec3& q, int sp, int sq, const Corners& t) {
@@ -119,7 +129,8 @@ bool corner_collide(const Corners& s, const Corners& t) {
     if (lm > 0 && ln > 0) {
       const Vec3 u = (1 / lm) * m - (1 / ln) * n;
       const double eps = 1e-14 * (std::abs(u.x) + std::abs(u.y) + std::abs(u.z));
-      if (dot(u, b) > eps * lb && dot(u, c) > eps * lc && dot(u, d) < -eps * ld && dot(u, e) < -eps * le) return false;
+      if (dot(u, b) > eps * lb && dot(u, c) > eps * lc && dot(u, d) < -eps * ld && dot(u, e) < -eps * le)
+        return false;
     }
   }
   const int sd = side(s, t.b), se = side(s, t.c);
@@ -136,7 +147,8 @@ bool edge_collide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   if (dot(cross(e, f), cross(e, g)) < -1e-13 * le * le * max_abs(f) * max_abs(g)) return false;
   if (exact_orientation(a, b, c, d) != 0) return false;
   const int axis = drop_axis({a, b, c});
-  return turn(drop(a, axis), drop(b, axis), drop(c, axis)) == turn(drop(a, axis), drop(b, axis), drop(d, axis));
+  return turn(drop(a, axis), drop(b, axis), drop(c, axis)) ==
+         turn(drop(a, axis), drop(b, axis), drop(d, axis));
 }
 
 }  // namespace
@@ -155,12 +167,15 @@ bool triangles_collide(const std::vector<Vec3>& points, const std::array<std::in
     return Corners{points[v[first]], points[v[(first + 1) % 3]], points[v[(first + 2) % 3]]};
   };
   switch (shared) {
-    case 0: return apart_collide(corners(s, 0), corners(t, 0));
-    case 1: return corner_collide(corners(s, in_s[0]), corners(t, in_t[0]));
+    case 0:
+      return apart_collide(corners(s, 0), corners(t, 0));
+    case 1:
+      return corner_collide(corners(s, in_s[0]), corners(t, in_t[0]));
     case 2:
       return edge_collide(points[s[in_s[0]]], points[s[in_s[1]]], points[s[3 - in_s[0] - in_s[1]]],
                           points[t[3 - in_t[0] - in_t[1]]]);
-    default: return true;
+    default:
+      return true;
   }
 }
 

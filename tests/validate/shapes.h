@@ -17,7 +17,8 @@ InterfaceComplex weld(const InterfaceComplex& complex);
 /// A sphere of 20 * 4^level triangles.
 InterfaceComplex icosphere(double radius, int level, Label label, Vec3 centre = {});
 
-/// The faces between voxels of different labels of a volume, two triangles each, as a welded complex in world mm.
+/// The faces between voxels of different labels of a volume, two triangles each, as a welded complex in world
+/// mm.
 InterfaceComplex voxel_surface(const LabelVolume& volume);
 
 /// An all-background volume with entries for labels 1 .. labels.

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/error.h"
+#include "shapes.h"
+#include "validate/check_volume.h"
+
+namespace stackmesh {
+namespace {
+
+using namespace test;
+
+TetMesh one_tet(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  TetMesh m;
+  m.points = {a, b, c, d};
+  m.tets = {{0, 1, 2, 3}};
+  m.labels = {4};
+  m.faces = {{{1, 2, 3}, 4, 0}, {{0, 3, 2}, 4, 0}, {{0, 1, 3}, 4, 0}, {{2, 1, 0}, 4, 0}};
+  return m;
+}
+
+TEST(CheckVolume, RegularTetIsPerfect) {
+  const VolumeCheck c = check_volume(one_tet({1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}));
+  EXPECT_EQ(c.nodes, 4u);
+  EXPECT_EQ(c.tets, 1u);
+  EXPECT_EQ(c.inverted, 0u);
+  EXPECT_NEAR(c.dihedral_min_deg, 70.528779365509308, 1e-9);
+  EXPECT_NEAR(c.dihedral_max_deg, 70.528779365509308, 1e-9);
+  EXPECT_NEAR(c.radius_edge_max, std::sqrt(6.0) / 4, 1e-12);
+  EXPECT_NEAR(c.scaled_jacobian_min, 1, 1e-12);
+  EXPECT_TRUE(c.conforms);
+  ASSERT_EQ(c.labels.size(), 1u);
+  EXPECT_EQ(c.labels[0].label, 4);
+  EXPECT_NEAR(c.labels[0].volume_mm3, 8 / 3.0, 1e-12);
+}
+
+TEST(CheckVolume, CornerTetHasKnownDihedrals) {
+  const VolumeCheck c = check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}));
+  EXPECT_NEAR(c.dihedral_min_deg, 54.735610317245346, 1e-9);
+  EXPECT_NEAR(c.dihedral_max_deg, 90, 1e-9);
+  EXPECT_NEAR(c.radius_edge_max, std::sqrt(3.0) / 2, 1e-12);
+  EXPECT_NEAR(c.scaled_jacobian_min, std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(c.dihedral_below_10, 0u);
+}
+
+TEST(CheckVolume, NearlyFlatTetHasItsSmallDihedral) {
+  const double h =
+      std::tan(5 * std::acos(-1.0) / 180) / 3;  // 5 degrees above the sides of a triangle of inradius 1/3
+  const double s = 2 / std::sqrt(3.0);
+  const VolumeCheck c = check_volume(one_tet({0, 0, 0}, {s, 0, 0}, {s / 2, 1, 0}, {s / 2, 1 / 3.0, h}));
+  EXPECT_NEAR(c.dihedral_min_deg, 5, 1e-9);
+  EXPECT_EQ(c.dihedral_below_10, 1u);
+  EXPECT_GT(c.dihedral_max_deg, 160);
+}
+
+TEST(CheckVolume, FirstPercentileIsOfTheSmallestDihedralPerTet) {
+  TetMesh m;
+  for (int i = 0; i < 200; ++i) {
+    const TetMesh t = i < 3 ? one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2})
+                            : one_tet({1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1});
+    const std::int32_t n = static_cast<std::int32_t>(m.points.size());
+    m.points.insert(m.points.end(), t.points.begin(), t.points.end());
+    m.tets.push_back({n, n + 1, n + 2, n + 3});
+    m.labels.push_back(1);
+  }
+  EXPECT_NEAR(check_volume(m).dihedral_p1_deg, 54.7356, 1e-4);  // the second of two hundred
+}
+
+TEST(CheckVolume, InvertedAndFlatTetsAreCounted) {
+  TetMesh m = two_tets();
+  EXPECT_EQ(check_volume(m).inverted, 0u);
+  m.points[3].z = -0.5;
+  EXPECT_EQ(check_volume(m).inverted, 1u);
+  EXPECT_LT(check_volume(m).scaled_jacobian_min, 0);
+  EXPECT_NEAR(check_volume(m).labels[0].volume_mm3, -0.5 / 6, 1e-15);
+  m.points[3] = {0.25, 0.25, 0};
+  const VolumeCheck flat = check_volume(m);
+  EXPECT_EQ(flat.inverted, 1u);
+  EXPECT_EQ(flat.radius_edge_max, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(flat.dihedral_max_deg, 180, 1e-6);
+}
+
+TEST(CheckVolume, InversionIsExactBelowTheRoundingOfDoubles) {
+  // All have x = y, which is flat; one ulp to either side is not.
+  TetMesh m = one_tet({0.1, 0.1, 0.1}, {0.2, 0.2, 0.3}, {0.4, 0.4, 0.5}, {1.7, 1.7, 0.9});
+  EXPECT_EQ(check_volume(m).inverted, 1u);
+  m.points[3].x += 0x1p-52;
+  const std::size_t one_side = check_volume(m).inverted;
+  m.points[3].x -= 0x1p-51;
+  EXPECT_EQ(one_side + check_volume(m).inverted, 1u);
+}
+
+TEST(CheckVolume, TwoTetsWithTheirFacesConform) {
+  const VolumeCheck c = check_volume(two_tets());
+  EXPECT_TRUE(c.conforms);
+  EXPECT_EQ(c.nonconforming_faces, 0u);
+  ASSERT_EQ(c.labels.size(), 2u);
+  EXPECT_NEAR(c.labels[1].volume_mm3, 1 / 6.0, 1e-15);
+}
+
+std::size_t nonconforming(const TetMesh& m) {
+  const VolumeCheck c = check_volume(m);
+  EXPECT_EQ(c.conforms, c.nonconforming_faces == 0);
+  EXPECT_EQ(c.nonconforming_list.size(), c.nonconforming_faces);
+  return c.nonconforming_faces;
+}
+
+TEST(CheckVolume, EachWrongFaceIsCounted) {
+  TetMesh m = two_tets();
+  std::swap(m.labels[0], m.labels[1]);
+  EXPECT_EQ(nonconforming(m), 7u);
+
+  m = two_tets();
+  std::swap(m.faces[3].below, m.faces[3].above);
+  EXPECT_EQ(nonconforming(m), 1u);
+
+  m = two_tets();
+  std::swap(m.faces[0].v[0], m.faces[0].v[1]);
+  EXPECT_EQ(nonconforming(m), 1u);
+
+  m = two_tets();
+  m.faces.erase(m.faces.begin() + 3);
+  EXPECT_EQ(nonconforming(m), 1u);
+
+  m = two_tets();
+  m.faces.push_back(m.faces[2]);
+  EXPECT_EQ(nonconforming(m), 1u);
+
+  m = two_tets();
+  m.faces.push_back({{1, 3, 4}, 1, 2});  // no tet has it
+  EXPECT_EQ(nonconforming(m), 1u);
+
+  m = two_tets();
+  m.labels = {1, 1};  // the shared face is inside one label now; the others name a wrong one
+  EXPECT_EQ(nonconforming(m), 4u);
+  for (auto& f : m.faces) f.below = 1;
+  m.faces.erase(m.faces.begin() + 3);
+  EXPECT_EQ(nonconforming(m), 0u);
+}
+
+TEST(CheckVolume, SameFaceInWritingOfAnyRotationConforms) {
+  TetMesh m = two_tets();
+  for (auto& f : m.faces) f.v = {f.v[1], f.v[2], f.v[0]};
+  EXPECT_EQ(nonconforming(m), 0u);
+  for (auto& f : m.faces) std::swap(f.v[0], f.v[1]), std::swap(f.below, f.above);
+  EXPECT_EQ(nonconforming(m), 0u);
+}
+
+TEST(CheckVolume, ThreeTetsOnAFaceAndDuplicatesDoNotConform) {
+  TetMesh m = two_tets();
+  m.points.push_back({0, 0, 2});
+  m.tets.push_back({0, 1, 2, 5});
+  m.labels.push_back(1);
+  EXPECT_EQ(nonconforming(m), 4u);  // the crowded face, and the three new ones without an interface face
+
+  m = two_tets();
+  m.tets.push_back(m.tets[0]);
+  m.labels.push_back(1);
+  EXPECT_EQ(nonconforming(m), 4u);
+}
+
+TEST(CheckVolume, BrokenArraysAreRefused) {
+  TetMesh m = two_tets();
+  m.labels.pop_back();
+  EXPECT_THROW(check_volume(m), Error);
+  m = two_tets();
+  m.tets[1][2] = -1;
+  EXPECT_THROW(check_volume(m), Error);
+  m = two_tets();
+  m.faces[1].v[2] = 5;
+  EXPECT_THROW(check_volume(m), Error);
+  m = two_tets();
+  m.points[1].x = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(check_volume(m), Error);
+}
+
+}  // namespace
+}  // namespace stackmesh
