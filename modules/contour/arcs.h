@@ -22,6 +22,7 @@ struct Slice {
 struct CrackVertex {
   std::int32_t x, y;
   GridPoint position;
+  bool keep = false;  ///< simplification must not drop it
 };
 
 /// A piece of contour between two junctions, or a closed loop (first vertex == last vertex), with one label on
@@ -37,18 +38,18 @@ struct SliceArcs {
   std::size_t loops = 0;  ///< closed borders found
 };
 
-/// Decides whether the two pixels of a label that touch by a corner belong together anyway.
-using SameComponent = std::function<bool(int xa, int ya, int xb, int yb)>;
+/// How corners are treated.
+struct CornerRules {
+  /// True when two pixels of a label that touch by a corner hang together elsewhere in the volume.
+  std::function<bool(int xa, int ya, int xb, int yb)> same_component;
+  bool part = false;                  ///< draw contours that pass a corner on both sides a quarter pixel apart
+  std::vector<std::uint64_t> keep;    ///< keys (components.h) of corners that simplification must not drop, ascending
+};
 
 /// The crack contours of all labels of a slice as shared arcs. Where pixels touch by a corner only, one fixed rule
 /// decides (docs/contours.md): the background joins; else a label whose two pixels hang together elsewhere in the
-/// volume; else the corner stays a junction. With `part_corners`, contours that pass such a corner on both sides
-/// are drawn a quarter pixel apart.
-SliceArcs trace_arcs(const Slice& slice, const SameComponent& same_component, bool part_corners);
-
-/// True if a corner of the slice needs `same_component`: two pixels of a label, none of them background, touch by
-/// a corner only.
-bool has_touching_labels(const Slice& slice);
+/// volume; else the corner stays a junction.
+SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules);
 
 /// Simplifies arcs with tolerance (pixels); see extract_sections. Returns each arc's kept vertices.
 std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px);

@@ -39,15 +39,32 @@ std::int32_t VoxelComponents::find(std::int32_t run) {
   return run;
 }
 
-std::int32_t VoxelComponents::of(int x, int y, int slice) {
+void VoxelComponents::finish() {
+  for (std::size_t run = 0; run < runs_.size(); ++run) parent_[run] = parent_[parent_[run]];  // parents come first
+}
+
+std::int32_t VoxelComponents::of(int x, int y, int slice) const {
   const std::size_t row = static_cast<std::size_t>(slice) * height_ + y;
   const auto end = runs_.begin() + static_cast<std::ptrdiff_t>(row_start_[row + 1]);
   const auto it = std::partition_point(runs_.begin() + static_cast<std::ptrdiff_t>(row_start_[row]), end,
                                        [&](const Run& r) { return r.x1 <= x; });
-  // No path is shortened here, so that slices may ask at the same time.
-  std::int32_t run = static_cast<std::int32_t>(it - runs_.begin());
-  while (parent_[run] != run) run = parent_[run];
-  return run;
+  return parent_[it - runs_.begin()];
+}
+
+void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other, int other_k,
+                      std::vector<std::uint64_t>& corners) {
+  for (int y = 0; y < slice.height; ++y)
+    for (int x = 0; x < slice.width; ++x) {
+      const std::uint16_t label = slice.at(x, y);
+      if (label == 0 || other.at(x, y) == label) continue;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (other.at(x + dx, y + dy) != label || components.of(x, y, k) == components.of(x + dx, y + dy, other_k)) continue;
+          // The corners that pixel (x, y) shares with its neighbour.
+          for (int cy = std::max(0, dy); cy <= std::min(1, 1 + dy); ++cy)
+            for (int cx = std::max(0, dx); cx <= std::min(1, 1 + dx); ++cx) corners.push_back(corner_key(x + cx, y + cy));
+        }
+    }
 }
 
 }  // namespace stackmesh

@@ -11,8 +11,10 @@ class VoxelComponents {
  public:
   /// Slices must be added in order of the stack; all of one size.
   void add(const Slice& slice);
+  /// To be called once after the last slice.
+  void finish();
   /// The component's number of a voxel that is not background.
-  std::int32_t of(int x, int y, int slice);
+  std::int32_t of(int x, int y, int slice) const;
 
  private:
   struct Run {
@@ -27,5 +29,14 @@ class VoxelComponents {
   std::vector<std::int32_t> parent_;
   std::vector<std::size_t> row_start_ = {0};
 };
+
+/// Adds the corners of slice k (as corner keys) at which one of its components touches another one of the same
+/// label in a neighbouring slice, by an edge or a corner of voxels. Were contours simplified there, the two could
+/// grow together.
+void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other, int other_k,
+                      std::vector<std::uint64_t>& corners);
+
+/// The key of pixel corner (x, y).
+inline std::uint64_t corner_key(int x, int y) { return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x); }
 
 }  // namespace stackmesh

@@ -10,34 +10,10 @@
 #include "base/parallel.h"
 #include "contour/arcs.h"
 #include "contour/components.h"
+#include "contour/slices.h"
 
 namespace stackmesh {
 namespace {
-
-/// The volume's axes as the stack has them: in-plane x, in-plane y, stacking axis; always a cyclic permutation.
-struct StackAxes {
-  int u, v, w;
-};
-
-StackAxes axes_for(int axis) { return {(axis + 1) % 3, (axis + 2) % 3, axis}; }
-
-Slice slice_of(const LabelVolume& volume, const StackAxes& axes, int k) {
-  const std::array<std::size_t, 3> stride = {1, static_cast<std::size_t>(volume.size[0]),
-                                             static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
-  Slice slice;
-  slice.width = volume.size[axes.u];
-  slice.height = volume.size[axes.v];
-  slice.pixels.resize(static_cast<std::size_t>(slice.width) * slice.height);
-  const std::uint16_t* from = volume.voxels.data() + static_cast<std::size_t>(k) * stride[axes.w];
-  if (axes.w == 2) {
-    std::copy(from, from + slice.pixels.size(), slice.pixels.begin());
-    return slice;
-  }
-  for (int y = 0; y < slice.height; ++y)
-    for (int x = 0; x < slice.width; ++x)
-      slice.pixels[static_cast<std::size_t>(y) * slice.width + x] = from[x * stride[axes.u] + y * stride[axes.v]];
-  return slice;
-}
 
 std::vector<Label> labels_in(const Slice& slice, const LabelVolume& volume) {
   std::set<std::uint16_t> seen(slice.pixels.begin(), slice.pixels.end());
@@ -95,28 +71,40 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
   stack.frame.origin = volume.world(corner[0], corner[1], corner[2]);
   stack.frame.axes = {volume.axes[axes.u], volume.axes[axes.v], volume.axes[axes.w]};
 
-  std::atomic<bool> touching{false};
-  parallel_for(count, options.threads, [&](std::size_t k) {
-    if (!touching && has_touching_labels(slice_of(volume, axes, static_cast<int>(k)))) touching = true;
-  });
+  const int step = slices_at_once(volume, axes, options.threads);
   VoxelComponents components;
-  if (touching)
-    for (int k = 0; k < count; ++k) components.add(slice_of(volume, axes, k));
+  for (int k = 0; k < count; k += step)
+    for (const Slice& slice : read_slices(volume, axes, k, std::min(count, k + step))) components.add(slice);
+  components.finish();
 
   stack.sections.resize(count);
   std::vector<std::size_t> loops(count, 0), traced_vertices(count, 0);
   std::atomic<int> done{0};
-  parallel_for(count, options.threads, [&](std::size_t i) {
-    const int k = static_cast<int>(i);
-    const Slice slice = slice_of(volume, axes, k);
-    const SameComponent same = [&](int xa, int ya, int xb, int yb) { return components.of(xa, ya, k) == components.of(xb, yb, k); };
-    const SliceArcs traced = trace_arcs(slice, same, options.simplify_px > 0);
+  const auto extract = [&](const Slice& slice, int k, const Slice* below, const Slice* above) {
+    CornerRules rules;
+    rules.same_component = [&](int xa, int ya, int xb, int yb) {
+      return components.of(xa, ya, k) == components.of(xb, yb, k);
+    };
+    if (options.simplify_px > 0) {
+      rules.part = true;
+      if (below != nullptr) touching_corners(components, slice, k, *below, k - 1, rules.keep);
+      if (above != nullptr) touching_corners(components, slice, k, *above, k + 1, rules.keep);
+      std::sort(rules.keep.begin(), rules.keep.end());
+    }
+    const SliceArcs traced = trace_arcs(slice, rules);
     stack.sections[k] = make_section(traced, volume, options.simplify_px, k * volume.spacing_mm[axes.w]);
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;
     if (k == 0) stack.touches_low = labels_in(slice, volume);
     if (k == count - 1) stack.touches_high = labels_in(slice, volume);
     progress.advance(static_cast<double>(++done) / count);
+  };
+  parallel_for((count + step - 1) / step, options.threads, [&](std::size_t block) {
+    const int first = static_cast<int>(block) * step, last = std::min(count, first + step);
+    const int begin = std::max(0, first - 1), end = std::min(count, last + 1);  // with a neighbour on either side
+    const std::vector<Slice> slices = read_slices(volume, axes, begin, end);
+    for (int k = first; k < last; ++k)
+      extract(slices[k - begin], k, k > begin ? &slices[k - begin - 1] : nullptr, k + 1 < end ? &slices[k - begin + 1] : nullptr);
   });
   for (int k = 0; k < count; ++k) {
     result.loops += loops[k];

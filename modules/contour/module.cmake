@@ -1,6 +1,6 @@
 # Label slices to sections: exact crack contours (OpenCV), shared arcs, simplification.
 stackmesh_module(contour
-  SOURCES components.cpp trace.cpp simplify.cpp extract.cpp
+  SOURCES slices.cpp components.cpp trace.cpp simplify.cpp extract.cpp
   HEADERS extract.h
   USES base model
   PRIVATE opencv_core opencv_imgproc)

@@ -27,13 +27,14 @@ class ArcSimplifier {
     for (std::size_t a = 0; a < arcs_.size(); ++a) {
       const std::int32_t last = static_cast<std::int32_t>(arcs_[a].chain.size()) - 1;
       const std::int32_t arc = static_cast<std::int32_t>(a);
-      if (arcs_[a].closed) {  // anchored at its start and at the vertex furthest from it
-        const std::int32_t far = furthest(arcs_[a].chain);
-        add(arc, 0, far, tolerance_, chords_);
-        add(arc, far, last, tolerance_, chords_);
-      } else {
-        add(arc, 0, last, tolerance_, chords_);
-      }
+      // A closed loop is anchored at its start and at the vertex furthest from it; any arc at the vertices to keep.
+      const std::int32_t far = arcs_[a].closed ? furthest(arcs_[a].chain) : last;
+      std::int32_t from = 0;
+      for (std::int32_t i = 1; i <= last; ++i)
+        if (i == last || i == far || arcs_[a].chain[i].keep) {
+          add(arc, from, i, tolerance_, chords_);
+          from = i;
+        }
     }
     while (refine_crossings()) {
     }

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <cstring>
 #include <map>
 
 #include "base/error.h"
 #include "contour/arcs.h"
+#include "contour/components.h"
 
 namespace stackmesh {
 namespace {
@@ -26,10 +29,30 @@ constexpr std::array<int, 4> kStepX = {1, 0, -1, 0}, kStepY = {0, 1, 0, -1};
 
 class SliceTracer {
  public:
-  SliceTracer(const Slice& slice, const SameComponent& same, bool part) : slice_(slice), same_(same), part_(part) {}
+  SliceTracer(const Slice& slice, const CornerRules& rules) : slice_(slice), rules_(rules) {}
 
   SliceArcs run() {
-    std::map<std::uint16_t, Box> boxes;
+    find_labels();
+    if (labels_.empty()) return {};
+    width_ = all_.x1 - all_.x0 + 2;  // corners in x
+    height_ = all_.y1 - all_.y0 + 2;
+    cracks_.assign(static_cast<std::size_t>(width_) * (height_ + 1) + 8, 0);  // a row of none comes first
+    for (const auto& [label, extent] : labels_) trace_label(label, extent.box);
+    link();
+    for (const auto& [label, extent] : labels_)
+      if (extent.twice_area != 2 * extent.pixels) fail_internal("contours do not enclose a label's pixels", "contours");
+    return std::move(out_);
+  }
+
+ private:
+  struct Extent {
+    Box box;
+    std::int64_t pixels = 0, twice_area = 0;  // counted in the image; enclosed by the arcs
+  };
+
+  void find_labels() {
+    Extent* extent = nullptr;
+    std::uint16_t of = 0;
     for (int y = 0; y < slice_.height; ++y) {
       const std::uint16_t* row = &slice_.pixels[static_cast<std::size_t>(y) * slice_.width];
       for (int x = 0; x < slice_.width;) {
@@ -37,25 +60,19 @@ class SliceTracer {
         const int start = x;
         while (x < slice_.width && row[x] == label) ++x;
         if (label == 0) continue;
-        Box& box = boxes[label];
-        box.add(start, y);
-        box.add(x - 1, y);
-        all_.add(start, y);
-        all_.add(x - 1, y);
+        if (label != of) extent = &labels_[of = label];
+        extent->box.add(start, y);
+        extent->box.add(x - 1, y);
+        extent->pixels += x - start;
       }
     }
-    if (boxes.empty()) return {};
-    width_ = all_.x1 - all_.x0 + 2;  // corners in x
-    height_ = all_.y1 - all_.y0 + 2;
-    horizontal_.assign(static_cast<std::size_t>(width_) * height_, 0);
-    vertical_.assign(static_cast<std::size_t>(width_) * height_, 0);
-    for (const auto& [label, box] : boxes) trace_label(label, box);
-    link();
-    return std::move(out_);
+    for (const auto& [label, found] : labels_) {
+      all_.add(found.box.x0, found.box.y0);
+      all_.add(found.box.x1, found.box.y1);
+    }
   }
 
- private:
-  std::size_t corner(int x, int y) const { return static_cast<std::size_t>(y - all_.y0) * width_ + (x - all_.x0); }
+  std::size_t corner(int x, int y) const { return static_cast<std::size_t>(y - all_.y0 + 1) * width_ + (x - all_.x0); }
 
   /// findContours on the mask doubled in size: each border sub-pixel (2x + a, 2y + b) stands for corner
   /// (x + a, y + b) of its own pixel, so the border is the crack contour, exactly.
@@ -81,39 +98,53 @@ class SliceTracer {
       for (const cv::Point& p : border) {
         const cv::Point next = lattice(p);
         if (next == last) continue;
-        if (next.y == last.y && std::abs(next.x - last.x) == 1) horizontal_[corner(std::min(last.x, next.x), next.y)] = 1;
-        else if (next.x == last.x && std::abs(next.y - last.y) == 1) vertical_[corner(next.x, std::min(last.y, next.y))] = 1;
-        else fail_internal("a traced border leaves the pixel cracks", "contours");
+        if (next.y == last.y && std::abs(next.x - last.x) == 1)
+          cracks_[corner(std::min(last.x, next.x), next.y)] |= kEast;
+        else if (next.x == last.x && std::abs(next.y - last.y) == 1)
+          cracks_[corner(next.x, std::min(last.y, next.y))] |= kNorth;
+        else
+          fail_internal("a traced border leaves the pixel cracks", "contours");
         last = next;
       }
     }
   }
 
-  std::uint8_t& crack(int x, int y, int dir) {
+  // A corner's byte: the cracks to its east and north, and whether an arc has them.
+  static constexpr std::uint8_t kEast = 1, kNorth = 2, kUsed = 2 /* shift */;
+  struct Crack {
+    std::uint8_t& byte;
+    std::uint8_t bit;
+    bool exists() const { return (byte & bit) != 0; }
+    bool used() const { return (byte & (bit << kUsed)) != 0; }
+    void use() { byte = static_cast<std::uint8_t>(byte | (bit << kUsed)); }
+  };
+  Crack crack(int x, int y, int dir) {
+    const std::size_t at = corner(x, y);
     switch (dir) {
-      case 0: return horizontal_[corner(x, y)];
-      case 1: return vertical_[corner(x, y)];
-      case 2: return horizontal_[corner(x - 1, y)];
-      default: return vertical_[corner(x, y - 1)];
+      case 0: return {cracks_[at], kEast};
+      case 1: return {cracks_[at], kNorth};
+      case 2: return {cracks_[at - 1], kEast};
+      default: return {cracks_[at - width_], kNorth};
     }
   }
-  bool has_crack(int x, int y, int dir) const {  // the four labels around the corner tell
-    const std::uint16_t sw = slice_.at(x - 1, y - 1), se = slice_.at(x, y - 1), nw = slice_.at(x - 1, y), ne = slice_.at(x, y);
-    return dir == 0 ? ne != se : dir == 1 ? nw != ne : dir == 2 ? nw != sw : sw != se;
+  int degree(int x, int y) const {
+    const std::size_t at = corner(x, y);
+    return (cracks_[at] & 1) + ((cracks_[at] >> 1) & 1) + (cracks_[at - 1] & 1) + ((cracks_[at - width_] >> 1) & 1);
   }
 
   enum class Corner { pass, junction, join_rising, join_falling };  // rising: the pixels SW and NE are joined
 
   Corner classify(int x, int y) const {
-    const std::uint16_t sw = slice_.at(x - 1, y - 1), se = slice_.at(x, y - 1), nw = slice_.at(x - 1, y), ne = slice_.at(x, y);
-    const int degree = (ne != se) + (nw != ne) + (nw != sw) + (sw != se);
-    if (degree <= 2) return Corner::pass;
-    if (degree == 3) return Corner::junction;
+    const int cracks = degree(x, y);
+    if (cracks <= 2) return Corner::pass;
+    if (cracks == 3) return Corner::junction;
+    const std::uint16_t sw = slice_.at(x - 1, y - 1), se = slice_.at(x, y - 1);
+    const std::uint16_t nw = slice_.at(x - 1, y), ne = slice_.at(x, y);
     const bool rising = sw == ne, falling = nw == se;
     if (rising && sw == 0) return Corner::join_rising;
     if (falling && nw == 0) return Corner::join_falling;
-    if (rising && same_(x - 1, y - 1, x, y)) return Corner::join_rising;
-    if (falling && same_(x - 1, y, x, y - 1)) return Corner::join_falling;
+    if (rising && rules_.same_component(x - 1, y - 1, x, y)) return Corner::join_rising;
+    if (falling && rules_.same_component(x - 1, y, x, y - 1)) return Corner::join_falling;
     return Corner::junction;
   }
 
@@ -126,31 +157,40 @@ class SliceTracer {
     arc.right = dir == 0 ? se : dir == 1 ? ne : dir == 2 ? nw : sw;
     arc.chain.push_back(vertex(x, y));
     const int first_x = x, first_y = y, first_dir = dir;
+    std::int64_t twice_area = 0;
     while (true) {
-      std::uint8_t& c = crack(x, y, dir);
-      if (c != 1) fail_internal("a pixel crack was traced by no border, or twice", "contours");
-      c = 2;
+      Crack c = crack(x, y, dir);
+      if (!c.exists() || c.used()) fail_internal("a pixel crack was traced by no border, or twice", "contours");
+      c.use();
+      twice_area += static_cast<std::int64_t>(x) * kStepY[dir] - static_cast<std::int64_t>(y) * kStepX[dir];
       x += kStepX[dir];
       y += kStepY[dir];
       arc.chain.push_back(vertex(x, y));
       const Corner kind = classify(x, y);
       if (kind == Corner::junction) break;
       const int next = turn(x, y, dir, kind);
-      if (part_ && kind != Corner::pass) draw_apart(arc.chain.back(), dir, next);
+      if (rules_.part && kind != Corner::pass && (!arc.chain.back().keep || joined_label(x, y, kind) == 0))
+        draw_apart(arc.chain.back(), dir, next);
       dir = next;
       if (closed && x == first_x && y == first_y && dir == first_dir) {
         arc.chain.front() = arc.chain.back();
         break;
       }
     }
+    if (arc.left != 0) labels_[arc.left].twice_area += twice_area;
+    if (arc.right != 0) labels_[arc.right].twice_area -= twice_area;
     out_.arcs.push_back(std::move(arc));
   }
 
+  std::uint16_t joined_label(int x, int y, Corner kind) const {
+    return kind == Corner::join_rising ? slice_.at(x, y) : slice_.at(x - 1, y);
+  }
+
   /// The direction in which the contour goes on.
-  int turn(int x, int y, int dir, Corner kind) const {
+  int turn(int x, int y, int dir, Corner kind) {
     if (kind == Corner::pass) {
       for (int d : {dir, (dir + 1) & 3, (dir + 3) & 3})
-        if (has_crack(x, y, d)) return d;
+        if (crack(x, y, d).exists()) return d;
       fail_internal("a contour ends in the open", "contours");
     }
     // Joined rising (SW-NE): contours round NW and SE, so cracks pair as (north, west) and (south, east).
@@ -160,7 +200,8 @@ class SliceTracer {
     return kind == Corner::join_rising ? rising[dir] : falling[dir];
   }
 
-  /// Moves a corner that two contours pass a quarter pixel into the pixel that this contour turns about.
+  /// Moves a corner that two contours pass a quarter pixel into the pixel that this contour turns about, so that
+  /// the joined label grows there: not where it would meet another of its components in the next slice.
   static void draw_apart(CrackVertex& v, int arrived, int leaves) {
     // The pixel lies between the crack it came by (opposite `arrived`) and the crack it leaves by.
     const int quarter = kGridPerPixel / 4;
@@ -168,49 +209,47 @@ class SliceTracer {
     v.position.y += quarter * (kStepY[leaves] - kStepY[arrived]);
   }
 
-  static CrackVertex vertex(int x, int y) { return {x, y, {x * kGridPerPixel, y * kGridPerPixel}}; }
+  CrackVertex vertex(int x, int y) const {
+    const bool keep = !rules_.keep.empty() && std::binary_search(rules_.keep.begin(), rules_.keep.end(), corner_key(x, y));
+    return {x, y, {x * kGridPerPixel, y * kGridPerPixel}, keep};
+  }
 
   /// All arcs: first from junction to junction, then the closed loops.
   void link() {
-    for (int y = all_.y0; y <= all_.y1 + 1; ++y)
-      for (int x = all_.x0; x <= all_.x1 + 1; ++x) {
-        if (classify(x, y) != Corner::junction) continue;
-        for (int dir = 0; dir < 4; ++dir)
-          if (has_crack(x, y, dir) && crack(x, y, dir) != 2) walk(x, y, dir, false);
-      }
-    for (int y = all_.y0; y <= all_.y1 + 1; ++y)
-      for (int x = all_.x0; x <= all_.x1 + 1; ++x)
-        for (int dir = 0; dir < 2; ++dir)
-          if (has_crack(x, y, dir) && crack(x, y, dir) != 2) walk(x, y, dir, true);
+    for_each_corner([&](int x, int y) {
+      if (classify(x, y) != Corner::junction) return;
+      for (int dir = 0; dir < 4; ++dir)
+        if (crack(x, y, dir).exists() && !crack(x, y, dir).used()) walk(x, y, dir, false);
+    });
+    for_each_corner([&](int x, int y) {
+      for (int dir = 0; dir < 2; ++dir)
+        if (crack(x, y, dir).exists() && !crack(x, y, dir).used()) walk(x, y, dir, true);
+    });
+  }
+
+  /// Visits, row by row, the corners with a crack to the east or north: all where three cracks meet are among them.
+  template <class Visit>
+  void for_each_corner(Visit visit) {
+    const std::size_t end = static_cast<std::size_t>(width_) * (height_ + 1);
+    for (std::size_t at = width_; at < end; ++at) {
+      std::uint64_t eight;
+      std::memcpy(&eight, &cracks_[at], sizeof eight);
+      if (eight == 0) at += 7;
+      else if (cracks_[at] != 0) visit(all_.x0 + static_cast<int>(at % width_), all_.y0 + static_cast<int>(at / width_) - 1);
+    }
   }
 
   const Slice& slice_;
-  const SameComponent& same_;
-  const bool part_;
+  const CornerRules& rules_;
   SliceArcs out_;
   Box all_;
+  std::map<std::uint16_t, Extent> labels_;
   int width_ = 0, height_ = 0;
-  std::vector<std::uint8_t> horizontal_, vertical_;  // 1: traced by a border, 2: in an arc
+  std::vector<std::uint8_t> cracks_;
 };
 
 }  // namespace
 
-SliceArcs trace_arcs(const Slice& slice, const SameComponent& same_component, bool part_corners) {
-  return SliceTracer(slice, same_component, part_corners).run();
-}
-
-bool has_touching_labels(const Slice& slice) {
-  for (int y = 1; y < slice.height; ++y) {
-    const std::uint16_t* low = &slice.pixels[static_cast<std::size_t>(y - 1) * slice.width];
-    const std::uint16_t* high = low + slice.width;
-    for (int x = 1; x < slice.width; ++x) {
-      const std::uint16_t sw = low[x - 1], se = low[x], nw = high[x - 1], ne = high[x];
-      if (sw == se || nw == ne || sw == nw || se == ne) continue;
-      if ((sw == ne && sw == 0) || (nw == se && nw == 0)) continue;
-      if (sw == ne || nw == se) return true;
-    }
-  }
-  return false;
-}
+SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules) { return SliceTracer(slice, rules).run(); }
 
 }  // namespace stackmesh
