@@ -3,17 +3,16 @@
 #include <vector>
 
 #include "contour/arcs.h"
+#include "contour/slices.h"
+#include "model/label_volume.h"
 
 namespace stackmesh {
 
-/// The 6-connected components of all labels of a stack of slices, as runs along x.
+/// The 6-connected components of all labels of a volume, as runs along the volume's x.
 class VoxelComponents {
  public:
-  /// Slices must be added in order of the stack; all of one size.
-  void add(const Slice& slice);
-  /// To be called once after the last slice.
-  void finish();
-  /// The component's number of a voxel that is not background.
+  VoxelComponents(const LabelVolume& volume, const StackAxes& axes);
+  /// The component's number of a voxel that is not background, in the stack's axes.
   std::int32_t of(int x, int y, int slice) const;
 
  private:
@@ -24,9 +23,10 @@ class VoxelComponents {
   std::int32_t find(std::int32_t run);
   void join_rows(std::size_t row, std::size_t other);
 
+  StackAxes axes_;
   int height_ = 0;
   std::vector<Run> runs_;
-  std::vector<std::int32_t> parent_;
+  std::vector<std::int32_t> parent_;  // a root is its own; never after its child
   std::vector<std::size_t> row_start_ = {0};
 };
 

@@ -72,10 +72,7 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
   stack.frame.axes = {volume.axes[axes.u], volume.axes[axes.v], volume.axes[axes.w]};
 
   const int step = slices_at_once(volume, axes, options.threads);
-  VoxelComponents components;
-  for (int k = 0; k < count; k += step)
-    for (const Slice& slice : read_slices(volume, axes, k, std::min(count, k + step))) components.add(slice);
-  components.finish();
+  const VoxelComponents components(volume, axes);
 
   stack.sections.resize(count);
   std::vector<std::size_t> loops(count, 0), traced_vertices(count, 0);

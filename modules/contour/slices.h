@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "contour/arcs.h"
@@ -16,7 +17,23 @@ StackAxes axes_for(int stacking_axis);
 /// The slices [first, last) along the stacking axis.
 std::vector<Slice> read_slices(const LabelVolume& volume, const StackAxes& axes, int first, int last);
 
-/// How many slices are best read at once: a cache line holds 32 voxels along x.
+/// How many slices are best read at once: along x, neighbours share cache lines.
 int slices_at_once(const LabelVolume& volume, const StackAxes& axes, int threads);
+
+/// Four pixels as one number, to compare or skip at once.
+inline std::uint64_t four_pixels(const std::uint16_t* pixels) {
+  std::uint64_t four;
+  std::memcpy(&four, pixels, sizeof four);
+  return four;
+}
+
+/// The end of the run of equal pixels of a row that begins at x.
+inline int run_end(const std::uint16_t* row, int x, int width) {
+  const std::uint16_t label = row[x];
+  const std::uint64_t four = label * std::uint64_t{0x0001000100010001};
+  while (x + 4 <= width && four_pixels(row + x) == four) x += 4;
+  while (x < width && row[x] == label) ++x;
+  return x;
+}
 
 }  // namespace stackmesh

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "contour/arcs.h"
 #include "contour/components.h"
+#include "contour/slices.h"
 
 namespace stackmesh {
 namespace {
@@ -55,15 +56,14 @@ class SliceTracer {
     std::uint16_t of = 0;
     for (int y = 0; y < slice_.height; ++y) {
       const std::uint16_t* row = &slice_.pixels[static_cast<std::size_t>(y) * slice_.width];
-      for (int x = 0; x < slice_.width;) {
+      for (int x = 0, end; x < slice_.width; x = end) {
+        end = run_end(row, x, slice_.width);
         const std::uint16_t label = row[x];
-        const int start = x;
-        while (x < slice_.width && row[x] == label) ++x;
         if (label == 0) continue;
         if (label != of) extent = &labels_[of = label];
-        extent->box.add(start, y);
-        extent->box.add(x - 1, y);
-        extent->pixels += x - start;
+        extent->box.add(x, y);
+        extent->box.add(end - 1, y);
+        extent->pixels += end - x;
       }
     }
     for (const auto& [label, found] : labels_) {
