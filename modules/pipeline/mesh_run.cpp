@@ -26,8 +26,9 @@ class MeshRun {
     clock_.run("read", [&] { read(); });
     clock_.run("contours", [&] { make_sections(); });
     clock_.run("stitch", [&] { stitch(); });
-    if (o_.target == Target::volume) clock_.run("volume", [&] { fill(); });
-    clock_.run("validate", [&] { validate(); });
+    clock_.run("validate", [&] { judge_surface(); });
+    if (o_.target == Target::volume && is_sound()) clock_.run("volume", [&] { fill(); });
+    clock_.run("validate", [&] { judge_rest(); });
     const std::string refusal = verdict();
     if (refusal.empty()) clock_.run("write", [&] { write(); });
     report_.peak_rss_mb = peak_memory_mb();
@@ -119,11 +120,14 @@ class MeshRun {
     stack_ = Stack();
   }
 
+  bool is_sound() const { return report_.surface->open_edges == 0 && report_.surface->self_intersections == 0; }
+
   /// The volume mesher works in stack coordinates; only what it gives is mapped to the world.
   void fill() {
     FillOptions options = o_.fill;
+    options.known_sound = true;
     FillResult result = fill_volume(surface_, options);
-    if (!result.message.empty()) warn("volume mesher: " + result.message);
+    if (!result.fallback.empty()) warn("the volume mesher fell back: " + result.fallback + "; then " + result.message);
     if (result.status == FillResult::Status::verified) {
       report_.closure = "verified";
       mesh_ = std::move(result.mesh);
@@ -135,26 +139,19 @@ class MeshRun {
   }
 
   /// Stack coordinates to LPS; a mirrored frame turns triangles and tets inside out, so they are turned back.
-  void to_world() {
-    const bool mirrors = frame_.mirrors();
-    const auto turn = [&](std::vector<InterfaceTriangle>& triangles) {
-      if (mirrors)
-        for (InterfaceTriangle& t : triangles) std::swap(t.v[1], t.v[2]);
-    };
-    for (Vec3& p : surface_.points) p = frame_.to_world(p);
-    turn(surface_.triangles);
-    if (!mesh_) return;
-    for (Vec3& p : mesh_->points) p = frame_.to_world(p);
-    turn(mesh_->faces);
-    if (mirrors)
-      for (auto& t : mesh_->tets) std::swap(t[2], t[3]);
+  void to_world(std::vector<Vec3>& points, std::vector<InterfaceTriangle>& triangles) const {
+    for (Vec3& p : points) p = frame_.to_world(p);
+    if (frame_.mirrors())
+      for (InterfaceTriangle& t : triangles) std::swap(t.v[1], t.v[2]);
   }
 
-  void validate() {
-    to_world();
+  /// Closure and intersections, on the coordinates that will be written.
+  void judge_surface() {
+    world_surface_ = surface_;
+    to_world(world_surface_.points, world_surface_.triangles);
     SurfaceCheckOptions check;
     check.threads = o_.threads;
-    report_.surface = check_surface(surface_, check);
+    report_.surface = check_surface(world_surface_, check);
     report_.stitched.open_edges = report_.surface->open_edges;
     report_.stitched.self_intersections = report_.surface->self_intersections;
     for (LabelReport& row : report_.labels)
@@ -165,7 +162,14 @@ class MeshRun {
           row.euler = s.euler;
           row.surface_volume_mm3 = s.volume_mm3;
         }
+  }
+
+  void judge_rest() {
+    surface_ = std::move(world_surface_);
     if (mesh_) {
+      to_world(mesh_->points, mesh_->faces);
+      if (frame_.mirrors())
+        for (auto& t : mesh_->tets) std::swap(t[2], t[3]);
       report_.volume = check_volume(*mesh_);
       for (LabelReport& row : report_.labels)
         for (const auto& l : report_.volume->labels)
@@ -295,7 +299,7 @@ class MeshRun {
   Stack stack_;
   Frame frame_;
   int axis_ = 2;
-  InterfaceComplex surface_;
+  InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   std::optional<TetMesh> mesh_;
   WorldSpace world_ = WorldSpace::lps;
   std::vector<std::int32_t> offending_;

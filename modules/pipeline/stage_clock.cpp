@@ -18,15 +18,16 @@ double cpu_seconds() {
 }  // namespace
 
 void StageClock::begin(const std::string& name) {
-  stages_.push_back({name, 0, 0});
+  current_ = std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; }) - stages_.begin();
+  if (current_ == static_cast<std::ptrdiff_t>(stages_.size())) stages_.push_back({name, 0, 0});
   wall_ = std::chrono::steady_clock::now();
   cpu_s_ = cpu_seconds();
   progress_.begin(name);
 }
 
 void StageClock::end() {
-  stages_.back().wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
-  stages_.back().cpu_s = cpu_seconds() - cpu_s_;
+  stages_[current_].wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  stages_[current_].cpu_s += cpu_seconds() - cpu_s_;
   progress_.end();
 }
 

@@ -8,7 +8,7 @@
 
 namespace stackmesh {
 
-/// Times the stages of a run and tells the progress display of them.
+/// Times the stages of a run and tells the progress display of them. A stage that runs again adds to its time.
 class StageClock {
  public:
   StageClock(Progress& progress, std::vector<StageTime>& stages) : progress_(progress), stages_(stages) {}
@@ -29,6 +29,7 @@ class StageClock {
   std::vector<StageTime>& stages_;
   std::chrono::steady_clock::time_point wall_;
   double cpu_s_ = 0;
+  std::ptrdiff_t current_ = 0;
 };
 
 /// Largest resident set of this process so far, or of a child that has ended, in MB.

@@ -200,7 +200,7 @@ class Filler {
     if (hopeless_ || result.status == Status::timed_out) return result;
 
     FillResult first = std::move(result);
-    if (search(first)) return first;
+    if (!options_.known_sound && search(first)) return first;
     for (const Call& next :
          {Call{false, "T1e-12", scale}, Call{false, "T1e-16", scale}, Call{false, "", 4 * scale},
           Call{false, "", scale / 4}, Call{false, "T1e-12", 4 * scale}}) {
@@ -227,7 +227,7 @@ class Filler {
   }
 
   static FillResult with_note(FillResult result, const std::string& before) {
-    if (!before.empty()) result.message += "; before that, " + before;
+    result.fallback = before;
     return result;
   }
 

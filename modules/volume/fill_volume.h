@@ -16,6 +16,8 @@ struct FillOptions {
                                       ///< dihedral_deg and max_volume_mm3: no refinement
   std::optional<double> dihedral_deg;  ///< smallest dihedral angle, degrees; a target
   double timeout_s = 600;              ///< of all worker runs together, seconds
+  bool known_sound = false;            ///< the complex was shown to have no intersections: after a refusal TetGen
+                                       ///< is not asked for them (that search is slow)
   std::string worker_path;             ///< program that answers the worker call; empty: this very program
   std::vector<std::string> worker_args = {"--tetgen-worker"};
 };
@@ -31,7 +33,8 @@ struct FillResult {
     volume_mismatch  ///< a label's tetrahedra do not have the volume that its surface encloses
   };
   Status status = Status::refused;
-  std::string message;  ///< one line, for the report
+  std::string message;   ///< one line: what filled it, or why nothing did
+  std::string fallback;  ///< one line: what was tried before in vain; empty when the first attempt succeeded
   TetMesh mesh;         ///< the complex's points come first, bit-identical; points added inside follow
   std::vector<std::int32_t>
       offending_triangles;  ///< indices into complex.triangles, ascending: where it was refused
