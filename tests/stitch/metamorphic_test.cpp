@@ -1,5 +1,7 @@
 // The same stack moved, scaled, mirrored, renumbered, or on more threads.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 
 #include "checks.h"
@@ -56,12 +58,12 @@ TEST_P(StitchMetamorphic, TranslationMovesTheFrameOnly) {
 TEST_P(StitchMetamorphic, RenumberedLabelsKeepTheirVolumes) {
   LabelVolume other = volume();
   const std::size_t n = other.labels.size();
-  if (n < 3) GTEST_SKIP() << "one label only";
   // The voxels of label k become label n - k: same numbers, other places.
   for (std::uint16_t& v : other.voxels)
     if (v != 0) v = static_cast<std::uint16_t>(n - v);
   const SurfaceCheck a = check_surface(stitch_volume(volume(), 0.5, threads(1)).complex());
-  const InterfaceComplex& c = stitch_volume(other, 0.5, threads(1)).complex();
+  const Stitched renumbered = stitch_volume(other, 0.5, threads(1));
+  const InterfaceComplex& c = renumbered.complex();
   EXPECT_EQ(defects(c), "");
   const SurfaceCheck b = check_surface(c);
   ASSERT_EQ(a.labels.size(), b.labels.size());
@@ -69,24 +71,47 @@ TEST_P(StitchMetamorphic, RenumberedLabelsKeepTheirVolumes) {
     EXPECT_NEAR(surface_of(b, static_cast<Label>(n) - l.label).volume_mm3, l.volume_mm3, 1e-9 * l.volume_mm3);
 }
 
-TEST_P(StitchMetamorphic, MirroredStackIsClosedWithTheSameVolumes) {
+LabelVolume mirror(const LabelVolume& v, int axis) {
+  LabelVolume out = v;
+  for (int k = 0; k < v.size[2]; ++k)
+    for (int j = 0; j < v.size[1]; ++j)
+      for (int i = 0; i < v.size[0]; ++i) {
+        std::array<int, 3> m = {i, j, k};
+        m[axis] = v.size[axis] - 1 - m[axis];
+        out.voxels[out.index(m[0], m[1], m[2])] = v.voxels[v.index(i, j, k)];
+      }
+  return out;
+}
+
+void expect_mirrors_alike(const LabelVolume& v, double tolerance_rel) {
+  StitchOptions options;
+  options.threads = 1;
+  const SurfaceCheck a = check_surface(stitch_volume(v, 0, options).complex());
   for (int axis = 0; axis < 3; ++axis) {
-    const LabelVolume v = volume();
-    LabelVolume mirrored = v;
-    for (int k = 0; k < v.size[2]; ++k)
-      for (int j = 0; j < v.size[1]; ++j)
-        for (int i = 0; i < v.size[0]; ++i) {
-          const int m[3] = {axis == 0 ? v.size[0] - 1 - i : i, axis == 1 ? v.size[1] - 1 - j : j, axis == 2 ? v.size[2] - 1 - k : k};
-          mirrored.voxels[v.index(m[0], m[1], m[2])] = v.voxels[v.index(i, j, k)];
-        }
-    const SurfaceCheck a = check_surface(stitch_volume(v, 0, threads(1)).complex());
-    const Stitched s = stitch_volume(mirrored, 0, threads(1));
-    EXPECT_EQ(defects(s.complex()), "") << "axis " << axis;
-    const SurfaceCheck b = check_surface(s.complex());
+    const Stitched mirrored = stitch_volume(mirror(v, axis), 0, options);
+    EXPECT_EQ(defects(mirrored.complex()), "") << "axis " << axis;
+    const SurfaceCheck b = check_surface(mirrored.complex());
     ASSERT_EQ(a.labels.size(), b.labels.size());
-    for (const LabelSurface& l : a.labels)  // ties of the triangulation fall differently
-      EXPECT_NEAR(surface_of(b, l.label).volume_mm3, l.volume_mm3, 0.1 * l.volume_mm3) << "axis " << axis << " label " << l.label;
+    for (const LabelSurface& l : a.labels)
+      EXPECT_NEAR(surface_of(b, l.label).volume_mm3, l.volume_mm3, tolerance_rel * l.volume_mm3) << "axis " << axis << " label " << l.label;
   }
+}
+
+// In noise a fifth of a label's volume hangs on how ties of the triangulation fall, and they fall differently in a mirror.
+TEST_P(StitchMetamorphic, MirroredStackIsClosedWithTheSameVolumes) { expect_mirrors_alike(volume(), 0.2); }
+
+TEST(StitchMetamorphicSmooth, MirroredOrganKeepsItsVolumes) {
+  LabelVolume v;
+  v.size = {40, 36, 14};
+  v.spacing_mm = {1, 1, 2.5};
+  v.labels = {{0, ""}, {1, "shell"}, {2, "core"}};
+  for (int k = 0; k < v.size[2]; ++k)
+    for (int j = 0; j < v.size[1]; ++j)
+      for (int i = 0; i < v.size[0]; ++i) {
+        const double r = std::hypot(std::hypot(i - 18.3 - 0.4 * k, j - 17.6), 2.5 * (k - 6.7));
+        v.voxels.push_back(r < 8 ? 2 : r < 13 ? 1 : 0);
+      }
+  expect_mirrors_alike(v, 0.002);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, StitchMetamorphic, ::testing::Range(0, 24));

@@ -51,7 +51,7 @@ TEST(StitchToys, BoxOfTwoEqualSectionsHasItsVolumeExactly) {
 }
 
 TEST(StitchToys, FrustumFollowsItsWalls) {
-  const StitchResult r = stitch_contours({label_of(1, {{box(0, 0, 64, 64)}, {box(16, 16, 48, 48)}}, 8)});
+  const StitchResult r = stitch_contours({label_of(1, {{box(0, 0, 64, 64)}, {box(16, 16, 48, 48)}}, 8)}, with_caps(Caps::flat));
   EXPECT_EQ(defects(r.complex), "");
   // Prismatoid: (A0 + 4 Am + A1) h / 6, less what the four corners' linear ruling loses (nothing: it is ruled by planes).
   EXPECT_NEAR(surface_of(check_surface(r.complex), 1).volume_mm3, (64 * 64 + 4 * 48 * 48 + 32 * 32) * 8 / 6.0, 1e-6);
