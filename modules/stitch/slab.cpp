@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <queue>
+#include <set>
 
 #include "base/error.h"
 #include "stitch/planar.h"
@@ -155,56 +155,59 @@ class SlabStitcher {
     }
   }
 
-  /// Where two sheets meet over a coincident edge, one must pass beneath the other unless they may share their
-  /// rim: the background joins first, labels are kept apart (they stay 6-connected). Layers order them.
+  /// Where two sheets meet over a coincident edge, the one that passes beneath decides which labels meet between
+  /// them. Parts of a label that only touch there stay apart (labels are 6-connected, as in the image): the sheets
+  /// are ordered so that they do, or share their rim where either order would join something. Layers are that order.
   void order_sheets() {
     std::vector<std::pair<std::int32_t, std::int32_t>> below;  // (lower sheet, higher sheet)
+    std::vector<std::int32_t> root(sheets_.size());            // sheets that share their rims
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](std::int32_t s) {
+      while (root[s] != s) s = root[s] = root[root[s]];
+      return s;
+    };
     for (const FaceHandle f : cdt().finite_face_handles()) {
       const PlanarFace& left = f->info();
       if (!left.in_domain()) continue;
       for (int i = 0; i < 3; ++i) {
         const PlanarFace& right = f->neighbor(i)->info();
         if (left.edge[i] != kBoth || !right.in_domain() || left.sheet >= right.sheet) continue;
-        const bool low_joins = left.upper == right.lower;   // what meets if left passes beneath right
-        const bool high_joins = left.lower == right.upper;  // ... if left passes above right
-        if (low_joins == high_joins && !(low_joins && (left.upper == 0 || left.lower == 0))) continue;
-        const bool left_beneath = low_joins && high_joins ? left.upper == 0
-                                  : low_joins             ? left.upper == 0
-                                                          : left.lower != 0;
-        if (left_beneath) below.emplace_back(left.sheet, right.sheet);
-        else below.emplace_back(right.sheet, left.sheet);
+        const bool not_beneath = left.upper == right.lower && left.upper != 0;  // left beneath right would join a label
+        const bool not_above = left.lower == right.upper && left.lower != 0;
+        if (not_beneath && not_above) root[std::max(find(left.sheet), find(right.sheet))] = std::min(find(left.sheet), find(right.sheet));
+        else if (not_beneath) below.emplace_back(right.sheet, left.sheet);
+        else if (not_above) below.emplace_back(left.sheet, right.sheet);
       }
     }
     if (below.empty()) return;
+    for (auto& b : below) b = {find(b.first), find(b.second)};
+    below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }), below.end());
     std::sort(below.begin(), below.end());
     below.erase(std::unique(below.begin(), below.end()), below.end());
+    layer_by_longest_path(below);
+    for (std::size_t s = 0; s < sheets_.size(); ++s) sheets_[s].layer = sheets_[find(static_cast<std::int32_t>(s))].layer;
+  }
+
+  /// Layers so that each pair ascends; in a cycle any order is valid, so the lowest number goes first.
+  void layer_by_longest_path(const std::vector<std::pair<std::int32_t, std::int32_t>>& below) {
     std::vector<int> waiting(sheets_.size(), 0);
-    for (const auto& b : below) ++waiting[b.second];
-    std::vector<char> left_over(sheets_.size(), 0);
-    for (const auto& b : below) left_over[b.first] = left_over[b.second] = 1;
-    std::priority_queue<std::int32_t, std::vector<std::int32_t>, std::greater<>> ready;
-    std::vector<std::int32_t> open;
-    for (std::size_t s = 0; s < sheets_.size(); ++s)
-      if (left_over[s]) {
-        open.push_back(static_cast<std::int32_t>(s));
-        if (waiting[s] == 0) ready.push(static_cast<std::int32_t>(s));
-      }
-    std::size_t first_open = 0;
-    while (true) {
-      if (ready.empty()) {  // a cycle: any order is valid, take the lowest number
-        while (first_open < open.size() && !left_over[open[first_open]]) ++first_open;
-        if (first_open == open.size()) break;
-        ready.push(open[first_open]);
-      }
-      const std::int32_t s = ready.top();
-      ready.pop();
-      if (!left_over[s]) continue;
-      left_over[s] = 0;
+    std::set<std::int32_t> open, ready;
+    for (const auto& b : below) {
+      ++waiting[b.second];
+      open.insert(b.first);
+      open.insert(b.second);
+    }
+    for (std::int32_t s : open)
+      if (waiting[s] == 0) ready.insert(s);
+    while (!open.empty()) {
+      const std::int32_t s = ready.empty() ? *open.begin() : *ready.begin();
+      open.erase(s);
+      ready.erase(s);
       for (auto it = std::lower_bound(below.begin(), below.end(), std::make_pair(s, std::int32_t{-1}));
            it != below.end() && it->first == s; ++it) {
-        if (!left_over[it->second]) continue;
+        if (open.count(it->second) == 0) continue;
         sheets_[it->second].layer = std::max(sheets_[it->second].layer, sheets_[s].layer + 1);
-        if (--waiting[it->second] == 0) ready.push(it->second);
+        if (--waiting[it->second] == 0) ready.insert(it->second);
       }
     }
   }
