@@ -20,6 +20,7 @@ void run(const ContoursArguments& a) {
   const auto progress = a.terminal.make_progress();
   const ContourOptions options = a.contours.options();
   Input input = read_input(a.input.options());
+  check_stack_axis(input, options.axis);
   const Stack stack = input.sections ? std::move(*input.sections) : extract_sections(*input.volume, options, *progress).stack;
   AtomicFiles files;
   write_sections(files, a.output, stack);

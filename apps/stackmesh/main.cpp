@@ -13,6 +13,19 @@ int report(const char* text, stackmesh::ErrorKind kind) {
   return static_cast<int>(kind);
 }
 
+/// CLI11 would say only that a command is missing.
+void check_command(int argc, char** argv, const CLI::App& program) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  std::string known;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    if (word == command->get_name()) return;
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  }
+  if (word.rfind('-', 0) == 0) return;
+  stackmesh::fail_usage(argc > 1 ? "unknown command '" + word + "'" : "no command", "command line",
+                        "choose one of " + known + "; see stackmesh --help");
+}
+
 int run(int argc, char** argv) {
   CLI::App program{"Label slices of CT and MRI to conforming surfaces and tetrahedral meshes, closed and free of intersections."};
   program.name("stackmesh");
@@ -23,6 +36,7 @@ int run(int argc, char** argv) {
   stackmesh::app::add_surface_command(program);
   stackmesh::app::add_contours_command(program);
   stackmesh::app::add_info_command(program);
+  check_command(argc, argv, program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version

@@ -32,7 +32,7 @@ struct MeshArguments {
 };
 
 void add_options(CLI::App& command, MeshArguments& a, Target target) {
-  const CLI::Range positive(1e-12, 1e12);
+  const CLI::Validator positive = number_in(1e-12, 1e12, "a number above 0");
   a.input.add_to(command, true);
   command.add_option("-o,--output", a.outputs,
                      target == Target::volume ? "output: .vtu .msh .inp .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
@@ -40,7 +40,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       ->required()->allow_extra_args(false);
   command.add_option("--report", a.reports, "report file, .json; repeatable")->allow_extra_args(false);
   a.contours.add_to(command);
-  command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
   command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round")->capture_default_str();
   command.add_option("--space", a.space, "world frame of what is written: lps or ras")->capture_default_str();
   command.add_flag("--per-label", a.per_label, "surfaces: NAME_<label>.EXT for each label");
@@ -51,7 +51,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_option("--edge-length", e.edge_length, "uniform edge length, mm; per label 5=2.0,9=1.0");
   command.add_option("--edge-min", e.edge_min, "smallest edge of --deviation, mm")->check(positive);
   command.add_option("--edge-max", e.edge_max, "largest edge of --deviation, mm")->check(positive);
-  command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(CLI::Range(1.0, 100.0))->capture_default_str();
+  command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(number_in(1, 100, "a number from 1 to 100"))->capture_default_str();
   command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none")->check(CLI::Range(0, 10000))->capture_default_str();
   command.add_flag(target == Target::volume ? "--no-enhance" : "--raw,--no-enhance", e.off, "the stitched surface as it is");
   if (target == Target::surface) {
@@ -60,8 +60,8 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   }
   command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str();
   command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3")->check(positive);
-  command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(CLI::Range(1.0, 100.0));
-  command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(CLI::Range(0.0, 40.0));
+  command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100"));
+  command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40"));
   command.add_option("--order", a.order, "1: linear tetrahedra")->check(CLI::Range(1, 2))->capture_default_str();
   command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2");
   command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str();
@@ -97,6 +97,8 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.strict = a.strict;
 
   const EnhanceArguments& e = a.enhance;
+  check_interpolate(e.interpolate);
+  if (!e.edge_length.empty()) check_edge_lengths(e.edge_length);
   if (!e.off || e.interpolate != "0")
     o.notes.push_back("surface enhancement and virtual sections are not built yet: this run is that of --no-enhance --interpolate 0");
   for (const char* name : {"--deviation", "--edge-length", "--edge-min", "--edge-max", "--gradation", "--smooth", "--target-tets"})

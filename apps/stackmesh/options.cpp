@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "base/error.h"
 
@@ -18,11 +19,11 @@ std::vector<std::string> split(const std::string& text, char at) {
   return out;
 }
 
-double number(const std::string& text, const char* option) {
+/// The whole text as a finite number.
+std::optional<double> to_number(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value))
-    fail_usage("'" + text + "' is not a number", option, "see --help");
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -53,7 +54,7 @@ InputOptions InputArguments::options() const {
     if (parts.size() != 3) fail_usage("--spacing needs three numbers", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
     std::array<double, 3> s{};
     for (int i = 0; i < 3; ++i) {
-      s[i] = number(parts[i], "--spacing");
+      s[i] = parse_number(parts[i], "--spacing");
       if (s[i] <= 0) fail_usage("--spacing must be positive", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
     }
     o.spacing_mm = s;
@@ -64,7 +65,7 @@ InputOptions InputArguments::options() const {
 void ContourArguments::add_to(CLI::App& command) {
   command.add_option("--axis", axis, "stacking axis: auto (the coarsest spacing), x, y or z")->capture_default_str();
   command.add_option("--simplify", simplify_px, "contour simplification in pixels; 0 keeps every crack")
-      ->check(CLI::Range(0.0, 1000.0))->capture_default_str();
+      ->check(number_in(0, 1000, "a number from 0 to 1000"))->capture_default_str();
   command.add_option("--threads", threads, "threads (default: all)")->check(CLI::Range(1, 1024));
 }
 
@@ -90,6 +91,39 @@ std::unique_ptr<Progress> TerminalArguments::make_progress() const {
   return make_terminal_progress(quiet || progress == "none" ? ProgressMode::none
                                 : verbose || progress == "plain" ? ProgressMode::plain
                                                                  : ProgressMode::automatic);
+}
+
+CLI::Validator number_in(double low, double high, const std::string& what) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        const std::optional<double> value = to_number(text);
+        return value && *value >= low && *value <= high ? std::string() : "'" + text + "' is not " + what;
+      },
+      "", "number_in");
+}
+
+double parse_number(const std::string& text, const std::string& option) {
+  const std::optional<double> value = to_number(text);
+  if (!value) fail_usage("'" + text + "' is not a number", option, "see --help");
+  return *value;
+}
+
+void check_edge_lengths(const std::string& text) {
+  for (const std::string& item : split(text, ',')) {
+    const std::size_t at = item.find('=');
+    const bool per_label = text.find('=') != std::string::npos;
+    if (per_label != (at != std::string::npos) || at == 0 || (!per_label && item != text))
+      fail_usage("'" + text + "' is no edge length", "--edge-length", "write --edge-length 2.0, or per label 5=2.0,9=1.0, in mm");
+    if (parse_number(per_label ? item.substr(at + 1) : item, "--edge-length") <= 0)
+      fail_usage("'" + item + "' is not above 0", "--edge-length", "write --edge-length 2.0, or per label 5=2.0,9=1.0, in mm");
+  }
+}
+
+void check_interpolate(const std::string& text) {
+  if (text == "auto") return;
+  const bool digits = !text.empty() && text.size() <= 4 && text.find_first_not_of("0123456789") == std::string::npos;
+  if (!digits || std::stoi(text) > 1000)
+    fail_usage("'" + text + "' is not auto or a whole number from 0 to 1000", "--interpolate", "see --help");
 }
 
 void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label) {

@@ -11,6 +11,8 @@ namespace stackmesh {
 namespace {
 
 void read_contours(const InputOptions& options, Input& input) {
+  if (options.spacing_mm)
+    fail_usage("--spacing is for PNG/TIFF slices", options.paths[0], "leave it out: contour files are in mm");
   std::vector<ContourFile> files;
   for (const std::string& path : options.paths) {
     if (!is_contour_input(path)) fail_usage("a contour file cannot be mixed with other input", path, "give .cnt files only");
@@ -68,6 +70,18 @@ Input read_input(const InputOptions& options) {
   if (is_contour_input(options.paths[0])) read_contours(options, input);
   else read_volume(options, input);
   return input;
+}
+
+void check_stack_axis(const Input& input, StackAxis axis) {
+  if (!input.volume) {
+    if (axis == StackAxis::x || axis == StackAxis::y)
+      fail_usage("contour files are stacked along z", "--axis", "leave --axis out");
+    return;
+  }
+  const int a = stacking_axis(*input.volume, axis);
+  if (input.volume->size[a] < 2)
+    fail_input(std::string("only one slice along the stacking axis ") + "xyz"[a], input.path,
+               "give a stack of at least two slices, or choose another --axis");
 }
 
 }  // namespace stackmesh

@@ -30,4 +30,8 @@ struct Input {
 /// Reads the input and keeps the labels that were asked for. @throws Error(input), Error(usage)
 Input read_input(const InputOptions& options);
 
+/// Whether the input can be cut along the axis asked for: contours are stacked along z, and a volume needs two slices.
+/// @throws Error(usage), Error(input)
+void check_stack_axis(const Input& input, StackAxis axis);
+
 }  // namespace stackmesh

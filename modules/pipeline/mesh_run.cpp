@@ -43,13 +43,13 @@ class MeshRun {
     for (const std::string& path : o_.outputs) {
       const bool surface = is_surface_format(path), volume = is_volume_format(path);
       if (!surface && !(volume && o_.target == Target::volume))
-        fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", path,
+        fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
                    o_.target == Target::volume ? "choose .vtu .msh .inp .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
                                                : "choose .stl .ply .obj .off .vtp");
     }
     for (const std::string& path : o_.reports)
-      if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", path, "choose .json");
-    if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown --space '" + o_.space + "'", "", "choose lps or ras");
+      if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
+    if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
   }
 
   void warn(const std::string& text) { report_.warnings.push_back(text); }
@@ -79,7 +79,11 @@ class MeshRun {
       report_.labels[k - 1].input_volume_mm3 = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
   }
 
+  /// --strict must know of a lost component, too.
+  bool wants_fidelity() const { return !o_.reports.empty() || o_.strict; }
+
   void make_sections() {
+    check_stack_axis(input_, o_.contours.axis);
     if (input_.sections) {
       stack_ = std::move(*input_.sections);
       for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
@@ -91,7 +95,7 @@ class MeshRun {
       report_.contours.loops = c.loops;
       report_.contours.vertices_traced = c.vertices_traced;
       report_.contours.vertices = c.vertices;
-      if (o_.reports.empty()) input_.volume->voxels = {};  // no one asks for them any more
+      if (!wants_fidelity()) input_.volume->voxels = {};  // no one asks for them any more
     }
     report_.input.axis = std::string(1, "xyz"[axis_]);
     report_.input.sections = stack_.sections.size();
@@ -178,7 +182,7 @@ class MeshRun {
             row.tet_volume_mm3 = l.volume_mm3;
           }
     }
-    if (!o_.reports.empty() && input_.volume) judge_fidelity();
+    if (wants_fidelity() && input_.volume) judge_fidelity();
     for (const LabelReport& row : report_.labels)
       if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
   }

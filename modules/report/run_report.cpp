@@ -33,19 +33,17 @@ Json surface(const RunReport& r) {
           {"edge_median_mm", s.edge_median_mm}};
 }
 
+/// Every field is there even when no volume is: null.
 Json volume(const RunReport& r) {
-  Json j = {{"closure", r.closure}};
-  if (!r.volume) return j;
-  const VolumeCheck& v = *r.volume;
-  return {{"nodes", v.nodes},
-          {"tets", v.tets},
-          {"inverted", v.inverted},
-          {"dihedral_min_deg", v.dihedral_min_deg},
-          {"dihedral_p1_deg", v.dihedral_p1_deg},
-          {"dihedral_max_deg", v.dihedral_max_deg},
-          {"radius_edge_max", v.radius_edge_max},
-          {"scaled_jacobian_min", v.scaled_jacobian_min},
-          {"nonconforming_faces", v.nonconforming_faces},
+  const auto of = [&](auto field) { return r.volume ? Json((*r.volume).*field) : Json(nullptr); };
+  return {{"nodes", of(&VolumeCheck::nodes)},
+          {"tets", of(&VolumeCheck::tets)},
+          {"inverted", of(&VolumeCheck::inverted)},
+          {"dihedral_min_deg", of(&VolumeCheck::dihedral_min_deg)},
+          {"dihedral_p1_deg", of(&VolumeCheck::dihedral_p1_deg)},
+          {"dihedral_max_deg", of(&VolumeCheck::dihedral_max_deg)},
+          {"radius_edge_max", of(&VolumeCheck::radius_edge_max)},
+          {"scaled_jacobian_min", of(&VolumeCheck::scaled_jacobian_min)},
           {"closure", r.closure}};
 }
 
