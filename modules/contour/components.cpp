@@ -64,10 +64,35 @@ bool joined_nearby(const Slice& slice, const Slice& other, int x, int y, int dx,
          (in(slice, x, y + dy) && (in(other, x, y + dy) || in(slice, x + dx, y + dy)));
 }
 
+/// A voxel of the slice goes on into the other slice, where its label's next component touches it by a corner.
+void touching_beside(const VoxelComponents& components, const Slice& slice, const Slice& other, int other_k,
+                     std::vector<std::uint64_t>& corners) {
+  for (int y = 0; y + 1 < other.height; ++y) {
+    const std::uint16_t* low = &other.pixels[static_cast<std::size_t>(y) * other.width];
+    const std::uint16_t* high = low + other.width;
+    for (int x = 0; x + 1 < other.width; ++x) {
+      if (x + 4 <= other.width && four_pixels(low + x) == four_pixels(high + x)) {
+        x += 3;
+        continue;
+      }
+      if (low[x] == low[x + 1] || low[x] == high[x] || low[x + 1] == high[x + 1] || high[x] == high[x + 1]) continue;
+      for (int left : {0, 1}) {  // the diagonals (x, y)-(x + 1, y + 1) and (x + 1, y)-(x, y + 1)
+        const int right = 1 - left;
+        const std::uint16_t label = low[x + left];
+        if (label == 0 || high[x + right] != label) continue;
+        if (slice.at(x + left, y) != label && slice.at(x + right, y + 1) != label) continue;
+        if (components.of(x + left, y, other_k) != components.of(x + right, y + 1, other_k))
+          corners.push_back(corner_key(x + 1, y + 1));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other, int other_k,
                       std::vector<std::uint64_t>& corners) {
+  touching_beside(components, slice, other, other_k, corners);
   for (int y = 0; y < slice.height; ++y) {
     const std::uint16_t* row = &slice.pixels[static_cast<std::size_t>(y) * slice.width];
     const std::uint16_t* across = &other.pixels[static_cast<std::size_t>(y) * slice.width];

@@ -27,8 +27,9 @@ class ArcSimplifier {
     for (std::size_t a = 0; a < arcs_.size(); ++a) {
       const std::int32_t last = static_cast<std::int32_t>(arcs_[a].chain.size()) - 1;
       const std::int32_t arc = static_cast<std::int32_t>(a);
-      // A closed loop is anchored at its start and at the vertex furthest from it; any arc at the vertices to keep.
-      const std::int32_t far = arcs_[a].closed ? furthest(arcs_[a].chain) : last;
+      // A loop is anchored at its start and at the vertex furthest from it; any arc at the vertices to keep.
+      const bool loop = arcs_[a].chain.front().position == arcs_[a].chain.back().position;
+      const std::int32_t far = loop ? furthest(arcs_[a].chain) : last;
       std::int32_t from = 0;
       for (std::int32_t i = 1; i <= last; ++i)
         if (i == last || i == far || arcs_[a].chain[i].keep) {

@@ -50,8 +50,7 @@ std::vector<Slice> read_slices(const LabelVolume& volume, const StackAxes& axes,
 }
 
 int slices_at_once(const LabelVolume& volume, const StackAxes& axes, int threads) {
-  if (axes.w != 0) return 1;
-  return std::clamp(volume.size[0] / (4 * thread_count(threads)), 1, kTile);
+  return std::clamp(volume.size[axes.w] / (4 * thread_count(threads)), 1, axes.w == 0 ? kTile : 8);
 }
 
 }  // namespace stackmesh

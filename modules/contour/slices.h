@@ -17,7 +17,7 @@ StackAxes axes_for(int stacking_axis);
 /// The slices [first, last) along the stacking axis.
 std::vector<Slice> read_slices(const LabelVolume& volume, const StackAxes& axes, int first, int last);
 
-/// How many slices are best read at once: along x, neighbours share cache lines.
+/// How many slices are best read at once: along x, neighbours share cache lines; each is needed by its neighbours.
 int slices_at_once(const LabelVolume& volume, const StackAxes& axes, int threads);
 
 /// Four pixels as one number, to compare or skip at once.
