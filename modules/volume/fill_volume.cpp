@@ -202,8 +202,8 @@ class Filler {
     FillResult first = std::move(result);
     if (!options_.known_sound && search(first)) return first;
     for (const Call& next :
-         {Call{false, "T1e-12", scale}, Call{false, "T1e-16", scale}, Call{false, "", 4 * scale},
-          Call{false, "", scale / 4}, Call{false, "T1e-12", 4 * scale}}) {
+         {Call{false, "", scale / 4}, Call{false, "", 4 * scale}, Call{false, "T1e-12", scale},
+          Call{false, "T1e-16", scale}, Call{false, "T1e-12", 4 * scale}}) {
       if (Clock::now() >= deadline_) break;
       result = attempt(next, deadline_);
       if (result.status != Status::verified) continue;

@@ -185,16 +185,16 @@ TEST(FillWorker, SleepingWorkerTimesOut) {
 
 TEST(FillWorker, RealWorkerTimesOut) {
   FillOptions options;
-  options.timeout_s = 0.3;
+  options.timeout_s = 3;
   options.max_volume_mm3 = 1e-7;  // 8e9 tets: never done
   const auto start = std::chrono::steady_clock::now();
   auto complex = cube(8);
   const FillResult r = fill_volume(complex, options);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 60);
   // Plain filling takes a few milliseconds, so the fallback fits in what is left.
   ASSERT_EQ(r.status, Status::verified) << r.message;
   EXPECT_NE(r.fallback, "");
-  EXPECT_NE(r.message.find("was ended after"), std::string::npos) << r.message;
+  EXPECT_NE(r.fallback.find("was ended after"), std::string::npos) << r.fallback;
   shapes::expect_fills(r.mesh, complex);
 }
 
