@@ -4,12 +4,16 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace stackmesh {
 
-int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
+int thread_count(int threads) {
+  return threads > 0 ? threads : tbb::info::default_concurrency();
+}
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
-  const int n = thread_count(threads);
+  const int n = std::min(thread_count(threads), thread_count(0));  // for more, TBB would print a warning
   if (n == 1 || count < 2) {
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
@@ -19,8 +23,10 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
       for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
     });
   };
-  if (n == tbb::info::default_concurrency()) loop();  // the arena that is there already
-  else tbb::task_arena(n).execute(loop);
+  if (n == tbb::info::default_concurrency())
+    loop();  // the arena that is there already
+  else
+    tbb::task_arena(n).execute(loop);
 }
 
 }  // namespace stackmesh

@@ -25,8 +25,8 @@ struct CrackVertex {
   bool keep = false;  ///< simplification must not drop it
 };
 
-/// A piece of contour between two junctions, or a closed loop (first vertex == last vertex), with one label on
-/// its left and one on its right throughout.
+/// A piece of contour between two junctions, or a closed loop (first vertex == last vertex), with one label
+/// on its left and one on its right throughout.
 struct Arc {
   std::vector<CrackVertex> chain;
   std::uint16_t left = 0, right = 0;
@@ -42,13 +42,14 @@ struct SliceArcs {
 struct CornerRules {
   /// True when two pixels of a label that touch by a corner hang together elsewhere in the volume.
   std::function<bool(int xa, int ya, int xb, int yb)> same_component;
-  bool part = false;                  ///< draw contours that pass a corner on both sides a quarter pixel apart
-  std::vector<std::uint64_t> keep;    ///< keys (components.h) of corners that simplification must not drop, ascending
+  bool part = false;  ///< draw contours that pass a corner on both sides a quarter pixel apart
+  std::vector<std::uint64_t>
+      keep;  ///< keys (components.h) of corners that simplification must not drop, ascending
 };
 
-/// The crack contours of all labels of a slice as shared arcs. Where pixels touch by a corner only, one fixed rule
-/// decides (docs/contours.md): the background joins; else a label whose two pixels hang together elsewhere in the
-/// volume; else the corner stays a junction.
+/// The crack contours of all labels of a slice as shared arcs. Where pixels touch by a corner only, one fixed
+/// rule decides (docs/contours.md): the background joins; else a label whose two pixels hang together
+/// elsewhere in the volume; else the corner stays a junction.
 SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules);
 
 /// Simplifies arcs with tolerance (pixels); see extract_sections. Returns each arc's kept vertices.

@@ -5,7 +5,8 @@
 
 namespace stackmesh {
 
-VoxelComponents::VoxelComponents(const LabelVolume& volume, const StackAxes& axes) : axes_(axes), height_(volume.size[1]) {
+VoxelComponents::VoxelComponents(const LabelVolume& volume, const StackAxes& axes)
+    : axes_(axes), height_(volume.size[1]) {
   const int width = volume.size[0];
   const std::size_t rows = static_cast<std::size_t>(height_) * volume.size[2];
   row_start_.reserve(rows + 1);
@@ -31,8 +32,10 @@ void VoxelComponents::join_rows(std::size_t row, std::size_t other) {
       const std::int32_t a = find(static_cast<std::int32_t>(i)), b = find(static_cast<std::int32_t>(j));
       parent_[std::max(a, b)] = std::min(a, b);
     }
-    if (runs_[i].x1 < runs_[j].x1) ++i;
-    else ++j;
+    if (runs_[i].x1 < runs_[j].x1)
+      ++i;
+    else
+      ++j;
   }
 }
 
@@ -64,7 +67,8 @@ bool joined_nearby(const Slice& slice, const Slice& other, int x, int y, int dx,
          (in(slice, x, y + dy) && (in(other, x, y + dy) || in(slice, x + dx, y + dy)));
 }
 
-/// A voxel of the slice goes on into the other slice, where its label's next component touches it by a corner.
+/// A voxel of the slice goes on into the other slice, where its label's next component touches it by a
+/// corner.
 void touching_beside(const VoxelComponents& components, const Slice& slice, const Slice& other, int other_k,
                      std::vector<std::uint64_t>& corners) {
   for (int y = 0; y + 1 < other.height; ++y) {
@@ -75,7 +79,8 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
         x += 3;
         continue;
       }
-      if (low[x] == low[x + 1] || low[x] == high[x] || low[x + 1] == high[x + 1] || high[x] == high[x + 1]) continue;
+      if (low[x] == low[x + 1] || low[x] == high[x] || low[x + 1] == high[x + 1] || high[x] == high[x + 1])
+        continue;
       for (int left : {0, 1}) {  // the diagonals (x, y)-(x + 1, y + 1) and (x + 1, y)-(x, y + 1)
         const int right = 1 - left;
         const std::uint16_t label = low[x + left];
@@ -90,14 +95,15 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
 
 }  // namespace
 
-void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other, int other_k,
-                      std::vector<std::uint64_t>& corners) {
+void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other,
+                      int other_k, std::vector<std::uint64_t>& corners) {
   touching_beside(components, slice, other, other_k, corners);
   for (int y = 0; y < slice.height; ++y) {
     const std::uint16_t* row = &slice.pixels[static_cast<std::size_t>(y) * slice.width];
     const std::uint16_t* across = &other.pixels[static_cast<std::size_t>(y) * slice.width];
     for (int x = 0; x < slice.width; ++x) {
-      if (x + 4 <= slice.width && (four_pixels(row + x) == 0 || four_pixels(row + x) == four_pixels(across + x))) {
+      if (x + 4 <= slice.width &&
+          (four_pixels(row + x) == 0 || four_pixels(row + x) == four_pixels(across + x))) {
         x += 3;
         continue;
       }

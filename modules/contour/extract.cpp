@@ -29,13 +29,15 @@ Section make_section(const SliceArcs& traced, const LabelVolume& volume, double 
   section.z_mm = z_mm;
   std::unordered_map<std::uint64_t, std::int32_t> ids;
   const auto id_of = [&](GridPoint p) {
-    const std::uint64_t key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
+    const std::uint64_t key =
+        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
     const auto [it, fresh] = ids.emplace(key, static_cast<std::int32_t>(section.points.size()));
     if (fresh) section.points.push_back(p);
     return it->second;
   };
   for (std::size_t a = 0; a < traced.arcs.size(); ++a) {
-    const Label left = volume.labels[traced.arcs[a].left].number, right = volume.labels[traced.arcs[a].right].number;
+    const Label left = volume.labels[traced.arcs[a].left].number,
+                right = volume.labels[traced.arcs[a].right].number;
     for (std::size_t i = 0; i + 1 < kept[a].size(); ++i)
       section.edges.push_back({id_of(kept[a][i]), id_of(kept[a][i + 1]), left, right});
   }
@@ -98,10 +100,12 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
   };
   parallel_for((count + step - 1) / step, options.threads, [&](std::size_t block) {
     const int first = static_cast<int>(block) * step, last = std::min(count, first + step);
-    const int begin = std::max(0, first - 1), end = std::min(count, last + 1);  // with a neighbour on either side
+    const int begin = std::max(0, first - 1),
+              end = std::min(count, last + 1);  // with a neighbour on either side
     const std::vector<Slice> slices = read_slices(volume, axes, begin, end);
     for (int k = first; k < last; ++k)
-      extract(slices[k - begin], k, k > begin ? &slices[k - begin - 1] : nullptr, k + 1 < end ? &slices[k - begin + 1] : nullptr);
+      extract(slices[k - begin], k, k > begin ? &slices[k - begin - 1] : nullptr,
+              k + 1 < end ? &slices[k - begin + 1] : nullptr);
   });
   for (int k = 0; k < count; ++k) {
     result.loops += loops[k];

@@ -12,23 +12,24 @@ namespace stackmesh {
 enum class StackAxis { automatic, x, y, z };
 
 struct ContourOptions {
-  StackAxis axis = StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
-  double simplify_px = 0.5;               ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
-  int threads = 0;                        ///< 0: all
+  StackAxis axis =
+      StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
+  double simplify_px = 0.5;  ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
+  int threads = 0;           ///< 0: all
 };
 
 struct ContourResult {
-  Stack stack;                       ///< one section a slice, not yet noded
-  int axis = 2;                      ///< stacking axis: 0 x, 1 y, 2 z
-  std::size_t loops = 0;             ///< closed borders that were traced
-  std::size_t vertices_traced = 0;   ///< crack vertices before simplification
-  std::size_t vertices = 0;          ///< vertices of the sections
+  Stack stack;                      ///< one section a slice, not yet noded
+  int axis = 2;                     ///< stacking axis: 0 x, 1 y, 2 z
+  std::size_t loops = 0;            ///< closed borders that were traced
+  std::size_t vertices_traced = 0;  ///< crack vertices before simplification
+  std::size_t vertices = 0;         ///< vertices of the sections
 };
 
-/// Turns every slice into a section: the exact pixel-crack contours of all labels as shared arcs (cv::findContours
-/// [Suzuki and Abe 1985] on the doubled mask, docs/contours.md), simplified by cv::approxPolyDP [Douglas and
-/// Peucker 1973] so that every pixel centre keeps its label and no contours cross.
-/// With simplify_px == 0 each label's area in a section is its pixel count, exactly.
+/// Turns every slice into a section: the exact pixel-crack contours of all labels as shared arcs
+/// (cv::findContours [Suzuki and Abe 1985] on the doubled mask, docs/contours.md), simplified by
+/// cv::approxPolyDP [Douglas and Peucker 1973] so that every pixel centre keeps its label and no contours
+/// cross. With simplify_px == 0 each label's area in a section is its pixel count, exactly.
 /// @throws Error(input) for fewer than two slices along the axis or no label at all.
 ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress);
 

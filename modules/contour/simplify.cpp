@@ -1,9 +1,8 @@
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "contour/arcs.h"
 #include "model/edge_grid.h"
@@ -61,8 +60,10 @@ class ArcSimplifier {
     return at;
   }
 
-  /// Appends the chords for chain[from..to]: approxPolyDP, then halved locally where a chord relabels a pixel centre.
-  void add(std::int32_t arc, std::int32_t from, std::int32_t to, double tolerance, std::vector<Chord>& out) const {
+  /// Appends the chords for chain[from..to]: approxPolyDP, then halved locally where a chord relabels a pixel
+  /// centre.
+  void add(std::int32_t arc, std::int32_t from, std::int32_t to, double tolerance,
+           std::vector<Chord>& out) const {
     const std::vector<CrackVertex>& chain = arcs_[arc].chain;
     if (to - from == 1) {
       out.push_back({arc, from, to, tolerance});
@@ -83,8 +84,10 @@ class ArcSimplifier {
       std::int32_t j = i + 1;
       while (j < to && curve[j - from] != kept[k]) ++j;
       if (k + 1 == kept.size()) j = to;
-      if (keeps_centres(chain, i, j)) out.push_back({arc, i, j, tolerance});
-      else add(arc, i, j, tolerance / 2, out);
+      if (keeps_centres(chain, i, j))
+        out.push_back({arc, i, j, tolerance});
+      else
+        add(arc, i, j, tolerance / 2, out);
       i = j;
       if (i == to) break;
     }
@@ -100,11 +103,14 @@ class ArcSimplifier {
     for (std::int32_t i = from; i < to; ++i) {
       const int step = chain[i + 1].y - chain[i].y;
       if (step == 0) continue;
-      if (direction != 0 && step != direction) return false;  // it would cross a row of centres more often than the chord
+      if (direction != 0 && step != direction)
+        return false;  // it would cross a row of centres more often than the chord
       direction = step;
-      const std::int64_t row = static_cast<std::int64_t>(std::min(chain[i].y, chain[i + 1].y)) * kGridPerPixel + kGridPerPixel / 2;
+      const std::int64_t row =
+          static_cast<std::int64_t>(std::min(chain[i].y, chain[i + 1].y)) * kGridPerPixel + kGridPerPixel / 2;
       if ((row - p.y) * (dy > 0 ? 1 : -1) <= 0 || (q.y - row) * (dy > 0 ? 1 : -1) <= 0) return false;
-      const std::int64_t off = (row - p.y) * dx - (static_cast<std::int64_t>(chain[i].x) * kGridPerPixel - p.x) * dy;
+      const std::int64_t off =
+          (row - p.y) * dx - (static_cast<std::int64_t>(chain[i].x) * kGridPerPixel - p.x) * dy;
       if (std::abs(off) >= kGridPerPixel / 2 * std::abs(dy)) return false;
     }
     return true;
@@ -139,7 +145,8 @@ class ArcSimplifier {
     bool any = false;
     for (std::size_t i = 0; i < chords_.size(); ++i)
       grid.near_segment(segments[i], [&](std::int32_t k) {
-        if (static_cast<std::size_t>(k) >= i || (bad[i] && bad[k]) || !clash(segments[i], segments[k])) return;
+        if (static_cast<std::size_t>(k) >= i || (bad[i] && bad[k]) || !clash(segments[i], segments[k]))
+          return;
         for (std::size_t c : {i, static_cast<std::size_t>(k)})
           if (chords_[c].to - chords_[c].from > 1) bad[c] = any = true;
       });
@@ -148,8 +155,10 @@ class ArcSimplifier {
     next.reserve(chords_.size() + 16);
     for (std::size_t i = 0; i < chords_.size(); ++i) {
       const Chord& c = chords_[i];
-      if (bad[i]) add(c.arc, c.from, c.to, c.tolerance_px / 2, next);
-      else next.push_back(c);
+      if (bad[i])
+        add(c.arc, c.from, c.to, c.tolerance_px / 2, next);
+      else
+        next.push_back(c);
     }
     chords_.swap(next);
     return true;

@@ -11,12 +11,15 @@ namespace {
 constexpr int kTile = 32;  // voxels in a cache line
 
 std::array<std::size_t, 3> strides(const LabelVolume& volume) {
-  return {1, static_cast<std::size_t>(volume.size[0]), static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
+  return {1, static_cast<std::size_t>(volume.size[0]),
+          static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
 }
 
 }  // namespace
 
-StackAxes axes_for(int stacking_axis) { return {(stacking_axis + 1) % 3, (stacking_axis + 2) % 3, stacking_axis}; }
+StackAxes axes_for(int stacking_axis) {
+  return {(stacking_axis + 1) % 3, (stacking_axis + 2) % 3, stacking_axis};
+}
 
 std::vector<Slice> read_slices(const LabelVolume& volume, const StackAxes& axes, int first, int last) {
   const std::array<std::size_t, 3> stride = strides(volume);
@@ -33,8 +36,8 @@ std::vector<Slice> read_slices(const LabelVolume& volume, const StackAxes& axes,
       std::copy_n(from + k * sw, slices[k].pixels.size(), slices[k].pixels.begin());
     return slices;
   }
-  // In tiles, so that a cache line is used up before it is dropped: it runs along the slices (axis x) or along
-  // in-plane y (axis y).
+  // In tiles, so that a cache line is used up before it is dropped: it runs along the slices (axis x) or
+  // along in-plane y (axis y).
   const int width = volume.size[axes.u], height = volume.size[axes.v], tall = axes.w == 0 ? 1 : kTile;
   for (int y0 = 0; y0 < height; y0 += tall)
     for (int x0 = 0; x0 < width; x0 += kTile) {

@@ -8,7 +8,8 @@
 
 namespace stackmesh {
 
-/// The volume's axes as the stack has them: in-plane x, in-plane y, stacking axis; always a cyclic permutation.
+/// The volume's axes as the stack has them: in-plane x, in-plane y, stacking axis; always a cyclic
+/// permutation.
 struct StackAxes {
   int u, v, w;
 };
@@ -17,7 +18,8 @@ StackAxes axes_for(int stacking_axis);
 /// The slices [first, last) along the stacking axis.
 std::vector<Slice> read_slices(const LabelVolume& volume, const StackAxes& axes, int first, int last);
 
-/// How many slices are best read at once: along x, neighbours share cache lines; each is needed by its neighbours.
+/// How many slices are best read at once: along x, neighbours share cache lines; each is needed by its
+/// neighbours.
 int slices_at_once(const LabelVolume& volume, const StackAxes& axes, int threads);
 
 /// Four pixels as one number, to compare or skip at once.

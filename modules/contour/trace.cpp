@@ -1,11 +1,10 @@
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
 #include "contour/arcs.h"
@@ -41,7 +40,8 @@ class SliceTracer {
     for (const auto& [label, extent] : labels_) trace_label(label, extent.box);
     link();
     for (const auto& [label, extent] : labels_)
-      if (extent.twice_area != 2 * extent.pixels) fail_internal("contours do not enclose a label's pixels", "contours");
+      if (extent.twice_area != 2 * extent.pixels)
+        fail_internal("contours do not enclose a label's pixels", "contours");
     return std::move(out_);
   }
 
@@ -72,7 +72,9 @@ class SliceTracer {
     }
   }
 
-  std::size_t corner(int x, int y) const { return static_cast<std::size_t>(y - all_.y0 + 1) * width_ + (x - all_.x0); }
+  std::size_t corner(int x, int y) const {
+    return static_cast<std::size_t>(y - all_.y0 + 1) * width_ + (x - all_.x0);
+  }
 
   /// findContours on the mask doubled in size: each border sub-pixel (2x + a, 2y + b) stands for corner
   /// (x + a, y + b) of its own pixel, so the border is the crack contour, exactly.
@@ -121,15 +123,20 @@ class SliceTracer {
   Crack crack(int x, int y, int dir) {
     const std::size_t at = corner(x, y);
     switch (dir) {
-      case 0: return {cracks_[at], kEast};
-      case 1: return {cracks_[at], kNorth};
-      case 2: return {cracks_[at - 1], kEast};
-      default: return {cracks_[at - width_], kNorth};
+      case 0:
+        return {cracks_[at], kEast};
+      case 1:
+        return {cracks_[at], kNorth};
+      case 2:
+        return {cracks_[at - 1], kEast};
+      default:
+        return {cracks_[at - width_], kNorth};
     }
   }
   int degree(int x, int y) const {
     const std::size_t at = corner(x, y);
-    return (cracks_[at] & 1) + ((cracks_[at] >> 1) & 1) + (cracks_[at - 1] & 1) + ((cracks_[at - width_] >> 1) & 1);
+    return (cracks_[at] & 1) + ((cracks_[at] >> 1) & 1) + (cracks_[at - 1] & 1) +
+           ((cracks_[at - width_] >> 1) & 1);
   }
 
   enum class Corner { pass, junction, join_rising, join_falling };  // rising: the pixels SW and NE are joined
@@ -152,7 +159,8 @@ class SliceTracer {
   void walk(int x, int y, int dir, bool closed) {
     Arc arc;
     arc.closed = closed;
-    const std::uint16_t sw = slice_.at(x - 1, y - 1), se = slice_.at(x, y - 1), nw = slice_.at(x - 1, y), ne = slice_.at(x, y);
+    const std::uint16_t sw = slice_.at(x - 1, y - 1), se = slice_.at(x, y - 1), nw = slice_.at(x - 1, y),
+                        ne = slice_.at(x, y);
     arc.left = dir == 0 ? ne : dir == 1 ? nw : dir == 2 ? sw : se;
     arc.right = dir == 0 ? se : dir == 1 ? ne : dir == 2 ? nw : sw;
     arc.chain.push_back(vertex(x, y));
@@ -160,7 +168,8 @@ class SliceTracer {
     std::int64_t twice_area = 0;
     while (true) {
       Crack c = crack(x, y, dir);
-      if (!c.exists() || c.used()) fail_internal("a pixel crack was traced by no border, or twice", "contours");
+      if (!c.exists() || c.used())
+        fail_internal("a pixel crack was traced by no border, or twice", "contours");
       c.use();
       twice_area += static_cast<std::int64_t>(x) * kStepY[dir] - static_cast<std::int64_t>(y) * kStepX[dir];
       x += kStepX[dir];
@@ -195,13 +204,14 @@ class SliceTracer {
     }
     // Joined rising (SW-NE): contours round NW and SE, so cracks pair as (north, west) and (south, east).
     // An arrival by direction d comes through the crack opposite d.
-    static constexpr std::array<int, 4> rising = {1, 0, 3, 2};   // east-bound comes from the west crack: goes north
+    static constexpr std::array<int, 4> rising = {1, 0, 3,
+                                                  2};  // east-bound comes from the west crack: goes north
     static constexpr std::array<int, 4> falling = {3, 2, 1, 0};  // ... goes south
     return kind == Corner::join_rising ? rising[dir] : falling[dir];
   }
 
-  /// Moves a corner that two contours pass a quarter pixel into the pixel that this contour turns about, so that
-  /// the joined label grows there: not where it would meet another of its components in the next slice.
+  /// Moves a corner that two contours pass a quarter pixel into the pixel that this contour turns about, so
+  /// that the joined label grows there: not where it would meet another of its components in the next slice.
   static void draw_apart(CrackVertex& v, int arrived, int leaves) {
     // The pixel lies between the crack it came by (opposite `arrived`) and the crack it leaves by.
     const int quarter = kGridPerPixel / 4;
@@ -210,7 +220,8 @@ class SliceTracer {
   }
 
   CrackVertex vertex(int x, int y) const {
-    const bool keep = !rules_.keep.empty() && std::binary_search(rules_.keep.begin(), rules_.keep.end(), corner_key(x, y));
+    const bool keep =
+        !rules_.keep.empty() && std::binary_search(rules_.keep.begin(), rules_.keep.end(), corner_key(x, y));
     return {x, y, {x * kGridPerPixel, y * kGridPerPixel}, keep};
   }
 
@@ -227,15 +238,18 @@ class SliceTracer {
     });
   }
 
-  /// Visits, row by row, the corners with a crack to the east or north: all where three cracks meet are among them.
+  /// Visits, row by row, the corners with a crack to the east or north: all where three cracks meet are among
+  /// them.
   template <class Visit>
   void for_each_corner(Visit visit) {
     const std::size_t end = static_cast<std::size_t>(width_) * (height_ + 1);
     for (std::size_t at = width_; at < end; ++at) {
       std::uint64_t eight;
       std::memcpy(&eight, &cracks_[at], sizeof eight);
-      if (eight == 0) at += 7;
-      else if (cracks_[at] != 0) visit(all_.x0 + static_cast<int>(at % width_), all_.y0 + static_cast<int>(at / width_) - 1);
+      if (eight == 0)
+        at += 7;
+      else if (cracks_[at] != 0)
+        visit(all_.x0 + static_cast<int>(at % width_), all_.y0 + static_cast<int>(at / width_) - 1);
     }
   }
 
@@ -250,6 +264,8 @@ class SliceTracer {
 
 }  // namespace
 
-SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules) { return SliceTracer(slice, rules).run(); }
+SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules) {
+  return SliceTracer(slice, rules).run();
+}
 
 }  // namespace stackmesh

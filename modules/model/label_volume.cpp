@@ -56,18 +56,21 @@ std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, co
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string item = text.substr(begin, end - begin);
     begin = end + 1;
-    if (item.empty()) fail_usage("empty entry in a list of labels", "'" + text + "'", "write --label 1,4,7-9,NAME");
+    if (item.empty())
+      fail_usage("empty entry in a list of labels", "'" + text + "'", "write --label 1,4,7-9,NAME");
     const std::size_t before = chosen.size();
     const std::size_t dash = item.find('-');
     // A name wins over a range, so that "lung-2" can be a name.
     for (std::size_t i = 1; i < labels.size(); ++i)
       if (labels[i].name == item) chosen.insert(i);
-    bool known = chosen.size() > before ||
-                 std::any_of(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return l.name == item; });
+    bool known = chosen.size() > before || std::any_of(labels.begin() + 1, labels.end(),
+                                                       [&](const LabelInfo& l) { return l.name == item; });
     if (!known && (is_number(item) || (dash != std::string::npos && is_number(item.substr(0, dash)) &&
                                        is_number(item.substr(dash + 1))))) {
       const long low = std::stol(item.substr(0, dash));
       const long high = dash == std::string::npos ? low : std::stol(item.substr(dash + 1));
+      if (high < low)
+        fail_usage("a range of labels runs downwards", "'" + item + "'", "write the smaller number first");
       for (std::size_t i = 1; i < labels.size(); ++i)
         if (labels[i].number >= low && labels[i].number <= high) {
           chosen.insert(i);

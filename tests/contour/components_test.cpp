@@ -17,7 +17,8 @@ std::vector<int> flood(const LabelVolume& v) {
   int count = 0;
   for (std::size_t seed = 0; seed < v.voxels.size(); ++seed) {
     if (v.voxels[seed] == 0 || component[seed] != 0) continue;
-    std::vector<std::array<int, 3>> todo = {{static_cast<int>(seed) % v.size[0], static_cast<int>(seed) / v.size[0] % v.size[1],
+    std::vector<std::array<int, 3>> todo = {{static_cast<int>(seed) % v.size[0],
+                                             static_cast<int>(seed) / v.size[0] % v.size[1],
                                              static_cast<int>(seed) / v.size[0] / v.size[1]}};
     component[seed] = ++count;
     while (!todo.empty()) {
@@ -91,13 +92,16 @@ TEST(VoxelComponents, TouchingCornersAreThoseSharedByTwoComponentsOfALabel) {
             for (int a = 0; a < 4; ++a)
               for (int b = 0; b < 4; ++b) {
                 const int xa = cx - a % 2, ya = cy - a / 2, xb = cx - b % 2, yb = cy - b / 2;
-                if (std::min({xa, ya, xb, yb}) < 0 || std::max(xa, xb) >= width || std::max(ya, yb) >= height) continue;
+                if (std::min({xa, ya, xb, yb}) < 0 || std::max(xa, xb) >= width || std::max(ya, yb) >= height)
+                  continue;
                 const std::size_t i = at(xa, ya, k), j = at(xb, yb, other);
-                if (v.voxels[i] != 0 && v.voxels[i] == v.voxels[j] && component[i] != component[j]) expected.insert(corner_key(cx, cy));
+                if (v.voxels[i] != 0 && v.voxels[i] == v.voxels[j] && component[i] != component[j])
+                  expected.insert(corner_key(cx, cy));
               }
         std::vector<std::uint64_t> found;
         touching_corners(components, slices[k], k, slices[other], other, found);
-        ASSERT_EQ(std::set<std::uint64_t>(found.begin(), found.end()), expected) << "seed " << seed << " slice " << k;
+        ASSERT_EQ(std::set<std::uint64_t>(found.begin(), found.end()), expected)
+            << "seed " << seed << " slice " << k;
         corners += expected.size();
       }
   }

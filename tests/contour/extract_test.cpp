@@ -30,13 +30,15 @@ LabelVolume oblique_volume(int seed) {
   v.spacing_mm = {0.8, 1.7, 2.9};
   v.origin_mm = {-31.5, 12.25, 204};
   const double a = 0.3 + seed, b = 1.1;
-  const Vec3 x = {std::cos(a), std::sin(a), 0}, y = {-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)};
+  const Vec3 x = {std::cos(a), std::sin(a), 0},
+             y = {-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)};
   v.axes = {x, y, (seed % 2 != 0 ? -1.0 : 1.0) * cross(x, y)};
   return v;
 }
 
 /// All that a section is, to be compared.
-std::vector<std::tuple<double, std::int64_t, std::int64_t, std::int64_t, std::int64_t>> digest(const Stack& stack) {
+std::vector<std::tuple<double, std::int64_t, std::int64_t, std::int64_t, std::int64_t>> digest(
+    const Stack& stack) {
   std::vector<std::tuple<double, std::int64_t, std::int64_t, std::int64_t, std::int64_t>> all;
   for (const Section& s : stack.sections) {
     all.emplace_back(s.z_mm, s.points.size(), s.edges.size(), 0, 0);
@@ -90,14 +92,18 @@ TEST(ExtractSections, EveryVoxelIsInTheRegionOfItsLabelWhereItLiesInTheWorld) {
               const Label label = v.labels[v.voxels[v.index(i, j, k)]].number;
               const double px = p.x / stack.grid_x_mm, py = p.y / stack.grid_y_mm;
               bool inside = false;
-              if (label == 0) continue;  // covered: regions of labels hold their voxels, and areas add up below
+              if (label == 0)
+                continue;  // covered: regions of labels hold their voxels, and areas add up below
               for (const SectionEdge& e : stack.sections[slice].edges) {
                 if (e.left != label && e.right != label) continue;
                 const GridPoint a = stack.sections[slice].points[e.a], b = stack.sections[slice].points[e.b];
                 if ((a.y <= py) == (b.y <= py)) continue;
-                if (a.x + (py - a.y) * (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y) > px) inside = !inside;
+                if (a.x + (py - a.y) * (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y) >
+                    px)
+                  inside = !inside;
               }
-              ASSERT_TRUE(inside) << "seed " << seed << " axis " << w << " voxel " << i << " " << j << " " << k;
+              ASSERT_TRUE(inside) << "seed " << seed << " axis " << w << " voxel " << i << " " << j << " "
+                                  << k;
             }
         if (simplify > 0) continue;
         const auto voxels = count_voxels(v);
@@ -162,7 +168,8 @@ TEST(ExtractSections, MirroredAndTransposedVolumesHaveTheSameAreas) {
           mirrored.voxels[v.index(v.size[0] - 1 - i, j, k)] = v.voxels[v.index(i, j, k)];
           transposed.voxels[transposed.index(j, i, k)] = v.voxels[v.index(i, j, k)];
         }
-    const ContourResult a = extract(v, StackAxis::z), b = extract(mirrored, StackAxis::z), c = extract(transposed, StackAxis::z);
+    const ContourResult a = extract(v, StackAxis::z), b = extract(mirrored, StackAxis::z),
+                        c = extract(transposed, StackAxis::z);
     ASSERT_EQ(a.vertices_traced, b.vertices_traced);
     ASSERT_EQ(a.vertices_traced, c.vertices_traced);
     ASSERT_EQ(a.loops, b.loops);
@@ -178,14 +185,16 @@ TEST(ExtractSections, MirroredAndTransposedVolumesHaveTheSameAreas) {
 
 TEST(ExtractSections, SimplifiedSectionsOfRandomStacksKeepCentresAndDoNotCross) {
   for (int seed = 0; seed < 400; ++seed) {
-    const LabelVolume v = testing_support::random_volume(seed);  // palette and numbers agree: centres can be compared
+    const LabelVolume v =
+        testing_support::random_volume(seed);  // palette and numbers agree: centres can be compared
     const ContourResult result = extract(v, StackAxis::z, seed % 2 != 0 ? 0.5 : 2);
     ASSERT_LE(result.vertices, result.vertices_traced);
     for (int k = 0; k < v.size[2]; ++k) {
       Slice s;
       s.width = v.size[0];
       s.height = v.size[1];
-      s.pixels.assign(v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, 0, k)), v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, 0, k + 1)));
+      s.pixels.assign(v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, 0, k)),
+                      v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, 0, k + 1)));
       const std::vector<Edge> edges = edges_of(result.stack.sections[k]);
       ASSERT_EQ(count_relabelled_centres(s, edges), 0) << "seed " << seed << " slice " << k;
       ASSERT_EQ(count_clashes(edges), 0) << "seed " << seed << " slice " << k;
@@ -202,7 +211,9 @@ TEST(ExtractSections, NamesWhatTouchesTheEnds) {
 }
 
 TEST(ExtractSections, AnEmptySliceIsAnEmptySection) {
-  const Stack stack = extract(testing_support::volume_of({{"11", "11"}, {"00", "00"}, {"11", "11"}}, 2.5), StackAxis::z).stack;
+  const Stack stack =
+      extract(testing_support::volume_of({{"11", "11"}, {"00", "00"}, {"11", "11"}}, 2.5), StackAxis::z)
+          .stack;
   ASSERT_EQ(stack.sections.size(), 3U);
   EXPECT_TRUE(stack.sections[1].edges.empty());
   EXPECT_EQ(stack.sections[1].z_mm, 2.5);
@@ -228,9 +239,12 @@ TEST(ExtractSections, RefusesOneSliceAndEmptyVolumes) {
     return "no error";
   };
   const LabelVolume one = testing_support::volume_of({{"01", "11"}});
-  EXPECT_NE(error(one, StackAxis::z).find("only one slice along the stacking axis, axis z"), std::string::npos) << error(one, StackAxis::z);
+  EXPECT_NE(error(one, StackAxis::z).find("only one slice along the stacking axis, axis z"),
+            std::string::npos)
+      << error(one, StackAxis::z);
   EXPECT_EQ(error(one, StackAxis::x), "no error");
-  EXPECT_NE(error(testing_support::volume_of({{"00"}, {"00"}}), StackAxis::z).find("no non-zero label"), std::string::npos);
+  EXPECT_NE(error(testing_support::volume_of({{"00"}, {"00"}}), StackAxis::z).find("no non-zero label"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -11,20 +11,28 @@ namespace {
 
 using Random = std::mt19937_64;
 
-int below(Random& r, int n) { return static_cast<int>(r() % static_cast<std::uint64_t>(n)); }
-
-std::int64_t cross(GridPoint o, GridPoint a, GridPoint b) {
-  return (std::int64_t{a.x} - o.x) * (std::int64_t{b.y} - o.y) - (std::int64_t{a.y} - o.y) * (std::int64_t{b.x} - o.x);
+int below(Random& r, int n) {
+  return static_cast<int>(r() % static_cast<std::uint64_t>(n));
 }
 
-int sign(std::int64_t v) { return v > 0 ? 1 : v < 0 ? -1 : 0; }
+std::int64_t cross(GridPoint o, GridPoint a, GridPoint b) {
+  return (std::int64_t{a.x} - o.x) * (std::int64_t{b.y} - o.y) -
+         (std::int64_t{a.y} - o.y) * (std::int64_t{b.x} - o.x);
+}
+
+int sign(std::int64_t v) {
+  return v > 0 ? 1 : v < 0 ? -1 : 0;
+}
 
 /// Is p, on the line through a and b, within the segment?
 bool within(GridPoint a, GridPoint b, GridPoint p) {
-  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y && p.y <= std::max(a.y, b.y);
+  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
+         p.y <= std::max(a.y, b.y);
 }
 
-bool shared(const Edge& e, GridPoint p) { return e.a == p || e.b == p; }
+bool shared(const Edge& e, GridPoint p) {
+  return e.a == p || e.b == p;
+}
 
 bool clash(const Edge& e, const Edge& f) {
   if (std::max(e.a.x, e.b.x) < std::min(f.a.x, f.b.x) || std::max(f.a.x, f.b.x) < std::min(e.a.x, e.b.x) ||
@@ -34,8 +42,10 @@ bool clash(const Edge& e, const Edge& f) {
   const int fa = sign(cross(e.a, e.b, f.a)), fb = sign(cross(e.a, e.b, f.b));
   const int ea = sign(cross(f.a, f.b, e.a)), eb = sign(cross(f.a, f.b, e.b));
   if (fa * fb < 0 && ea * eb < 0) return true;
-  return (fa == 0 && within(e.a, e.b, f.a) && !shared(e, f.a)) || (fb == 0 && within(e.a, e.b, f.b) && !shared(e, f.b)) ||
-         (ea == 0 && within(f.a, f.b, e.a) && !shared(f, e.a)) || (eb == 0 && within(f.a, f.b, e.b) && !shared(f, e.b));
+  return (fa == 0 && within(e.a, e.b, f.a) && !shared(e, f.a)) ||
+         (fb == 0 && within(e.a, e.b, f.b) && !shared(e, f.b)) ||
+         (ea == 0 && within(f.a, f.b, e.a) && !shared(f, e.a)) ||
+         (eb == 0 && within(f.a, f.b, e.b) && !shared(f, e.b));
 }
 
 }  // namespace
@@ -46,20 +56,29 @@ Slice random_slice(std::uint64_t seed, int largest) {
   s.width = 1 + below(r, largest);
   s.height = 1 + below(r, largest);
   s.pixels.assign(static_cast<std::size_t>(s.width) * s.height, 0);
-  const int labels = 1 + below(r, 8), empty = below(r, 101), keep = below(r, 101), kind = static_cast<int>(seed % 6);
+  const int labels = 1 + below(r, 8), empty = below(r, 101), keep = below(r, 101),
+            kind = static_cast<int>(seed % 6);
   const auto fill = [&](const std::function<int(int, int)>& f) {
     for (int y = 0; y < s.height; ++y)
-      for (int x = 0; x < s.width; ++x) s.pixels[static_cast<std::size_t>(y) * s.width + x] = static_cast<std::uint16_t>(f(x, y));
+      for (int x = 0; x < s.width; ++x)
+        s.pixels[static_cast<std::size_t>(y) * s.width + x] = static_cast<std::uint16_t>(f(x, y));
   };
   const auto any = [&] { return below(r, 100) < empty ? 0 : 1 + below(r, labels); };
   if (kind == 0) fill([&](int, int) { return any(); });
   if (kind == 1) fill([&](int, int) { return below(r, 100) < empty ? 0 : 1; });
   if (kind == 2)  // runs along x or y
-    fill([&](int x, int y) { return x > 0 && below(r, 100) < keep ? s.at(x - 1, y) : y > 0 && below(r, 100) < keep ? s.at(x, y - 1) : any(); });
+    fill([&](int x, int y) {
+      return x > 0 && below(r, 100) < keep   ? s.at(x - 1, y)
+             : y > 0 && below(r, 100) < keep ? s.at(x, y - 1)
+                                             : any();
+    });
   if (kind == 3)  // blobs
     for (int b = 0; b < 4 + labels; ++b) {
-      const int cx = below(r, s.width), cy = below(r, s.height), radius = 1 + below(r, 7), label = below(r, labels + 1);
-      fill([&](int x, int y) { return (x - cx) * (x - cx) + (y - cy) * (y - cy) <= radius * radius ? label : s.at(x, y); });
+      const int cx = below(r, s.width), cy = below(r, s.height), radius = 1 + below(r, 7),
+                label = below(r, labels + 1);
+      fill([&](int x, int y) {
+        return (x - cx) * (x - cx) + (y - cy) * (y - cy) <= radius * radius ? label : s.at(x, y);
+      });
     }
   if (kind == 4) {  // a checkerboard with flaws
     const int a = below(r, labels + 1), b = below(r, labels + 1);
@@ -67,19 +86,23 @@ Slice random_slice(std::uint64_t seed, int largest) {
   }
   if (kind == 5)  // thin boxes and rings
     for (int b = 0; b < 3 + labels; ++b) {
-      const int x0 = below(r, s.width), y0 = below(r, s.height), x1 = x0 + below(r, 9), y1 = y0 + below(r, 9), label = 1 + below(r, labels);
+      const int x0 = below(r, s.width), y0 = below(r, s.height), x1 = x0 + below(r, 9), y1 = y0 + below(r, 9),
+                label = 1 + below(r, labels);
       const bool ring = below(r, 2) != 0;
       fill([&](int x, int y) {
-        const bool in = x >= x0 && x <= x1 && y >= y0 && y <= y1, inner = x > x0 && x < x1 && y > y0 && y < y1;
+        const bool in = x >= x0 && x <= x1 && y >= y0 && y <= y1,
+                   inner = x > x0 && x < x1 && y > y0 && y < y1;
         return in && !(ring && inner) ? label : s.at(x, y);
       });
     }
-  if (std::all_of(s.pixels.begin(), s.pixels.end(), [](auto p) { return p == 0; })) s.pixels[s.pixels.size() / 2] = 1;
+  if (std::all_of(s.pixels.begin(), s.pixels.end(), [](auto p) { return p == 0; }))
+    s.pixels[s.pixels.size() / 2] = 1;
   return s;
 }
 
 Slice slice_of(const std::vector<std::string>& rows) {
-  return slice_of(static_cast<int>(rows[0].size()), static_cast<int>(rows.size()), [&](int x, int y) { return rows[y][x] - '0'; });
+  return slice_of(static_cast<int>(rows[0].size()), static_cast<int>(rows.size()),
+                  [&](int x, int y) { return rows[y][x] - '0'; });
 }
 
 Slice slice_of(int width, int height, const std::function<int(int, int)>& label) {
@@ -131,7 +154,8 @@ std::vector<Edge> edges_of(const SliceArcs& traced, double simplify_px) {
 
 std::vector<Edge> edges_of(const Section& section) {
   std::vector<Edge> edges;
-  for (const SectionEdge& e : section.edges) edges.push_back({section.points[e.a], section.points[e.b], e.left, e.right});
+  for (const SectionEdge& e : section.edges)
+    edges.push_back({section.points[e.a], section.points[e.b], e.left, e.right});
   return edges;
 }
 
@@ -144,7 +168,8 @@ std::int64_t count_relabelled_centres(const Slice& slice, const std::vector<Edge
     for (const Edge& e : edges) {
       if ((e.a.y <= row) == (e.b.y <= row)) continue;
       // Exact: the products stay below 2^60, and a long double divides them to far less than a grid unit.
-      const long double x = e.a.x + static_cast<long double>((row - e.a.y) * (std::int64_t{e.b.x} - e.a.x)) / (e.b.y - e.a.y);
+      const long double x =
+          e.a.x + static_cast<long double>((row - e.a.y) * (std::int64_t{e.b.x} - e.a.x)) / (e.b.y - e.a.y);
       crossings[e.left].push_back(x);
       crossings[e.right].push_back(x);
     }

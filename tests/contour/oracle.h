@@ -1,6 +1,6 @@
 #pragma once
-// Slices to trace, and what a contour must obey, told by means that share nothing with the tracer: counting pixels,
-// ray casting, integers.
+// Slices to trace, and what a contour must obey, told by means that share nothing with the tracer: counting
+// pixels, ray casting, integers.
 #include <cstdint>
 #include <functional>
 #include <random>
@@ -15,7 +15,8 @@
 
 namespace stackmesh::contour_tests {
 
-/// Noise, blobs, stripes, boxes and checkerboards of up to eight labels, up to `largest` pixels wide; never empty.
+/// Noise, blobs, stripes, boxes and checkerboards of up to eight labels, up to `largest` pixels wide; never
+/// empty.
 Slice random_slice(std::uint64_t seed, int largest = 22);
 
 /// A slice from rows of digits, the first row at y = 0.
@@ -44,7 +45,8 @@ struct Edge {
 std::vector<Edge> edges_of(const SliceArcs& traced, double simplify_px);
 std::vector<Edge> edges_of(const Section& section);
 
-/// The pixels whose centre has another label by the edges than in the slice: even-odd, one ray a row and label.
+/// The pixels whose centre has another label by the edges than in the slice: even-odd, one ray a row and
+/// label.
 std::int64_t count_relabelled_centres(const Slice& slice, const std::vector<Edge>& edges);
 
 /// Pairs of edges that meet elsewhere than in a common end point. Every pair is tested, in integers.

@@ -1,4 +1,5 @@
-// Simplified contours: every pixel centre keeps its label, nothing crosses, nothing vanishes, and it does get simpler.
+// Simplified contours: every pixel centre keeps its label, nothing crosses, nothing vanishes, and it does get
+// simpler.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,8 @@ TEST(SimplifyArcs, RandomSlicesKeepCentresAndDoNotCross) {
   for (int seed = 0; seed < 2000; ++seed) {
     const Slice s = random_slice(seed, 16);
     for (double tolerance : kTolerances_px)
-      expect_sound(s, seed % 2 != 0, tolerance, "seed " + std::to_string(seed) + " tolerance " + std::to_string(tolerance));
+      expect_sound(s, seed % 2 != 0, tolerance,
+                   "seed " + std::to_string(seed) + " tolerance " + std::to_string(tolerance));
     if (HasFatalFailure()) return;
   }
 }
@@ -44,12 +46,17 @@ TEST(SimplifyArcs, AwkwardShapesKeepCentresAndDoNotCross) {
       {"diagonal chain", slice_of(30, 30, [](int x, int y) { return x == y ? 1 : 0; })},
       {"diagonal chains of two labels", slice_of(30, 30, [](int x, int y) { return (x + y) % 2 ? 1 : 2; })},
       {"diagonal staircase", slice_of(40, 40, [](int x, int y) { return x > y ? 1 : 0; })},
-      {"thin diagonal staircase", slice_of(40, 40, [](int x, int y) { return x == y || x == y + 1 ? 1 : 0; })},
+      {"thin diagonal staircase",
+       slice_of(40, 40, [](int x, int y) { return x == y || x == y + 1 ? 1 : 0; })},
       {"flat staircase", slice_of(60, 20, [](int x, int y) { return x > 7 * y ? 1 : 2; })},
       {"nested rings", slice_of(31, 31, [&](int x, int y) { return ring(x, y) % 2; })},
       {"nested rings of five labels", slice_of(31, 31, [&](int x, int y) { return ring(x, y) % 5 + 1; })},
-      {"round rings", slice_of(41, 41, [](int x, int y) { return static_cast<int>(std::hypot(x - 20, y - 20)) % 4; })},
-      {"sectors", slice_of(41, 41, [](int x, int y) { return static_cast<int>(4 + std::floor(std::atan2(y - 20.3, x - 20.7))); })},
+      {"round rings",
+       slice_of(41, 41, [](int x, int y) { return static_cast<int>(std::hypot(x - 20, y - 20)) % 4; })},
+      {"sectors", slice_of(41, 41,
+                           [](int x, int y) {
+                             return static_cast<int>(4 + std::floor(std::atan2(y - 20.3, x - 20.7)));
+                           })},
       {"comb", slice_of(40, 20, [](int x, int y) { return y == 0 || x % 2; })},
       {"cross of slits", slice_of(21, 21, [](int x, int y) { return x == 10 || y == 10 ? 0 : 1; })}};
   for (const auto& [name, s] : shapes)
@@ -70,8 +77,10 @@ TEST(SimplifyArcs, NoCrackLeavesItsContourByMuchMoreThanTheTolerance) {
         for (const CrackVertex& v : traced.arcs[a].chain) {
           double nearest = 1e9;
           for (std::size_t i = 0; i + 1 < kept[a].size(); ++i) {
-            const double px = kept[a][i].x, py = kept[a][i].y, dx = kept[a][i + 1].x - px, dy = kept[a][i + 1].y - py;
-            const double t = std::clamp(((v.position.x - px) * dx + (v.position.y - py) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+            const double px = kept[a][i].x, py = kept[a][i].y, dx = kept[a][i + 1].x - px,
+                         dy = kept[a][i + 1].y - py;
+            const double t = std::clamp(
+                ((v.position.x - px) * dx + (v.position.y - py) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
             nearest = std::min(nearest, std::hypot(px + t * dx - v.position.x, py + t * dy - v.position.y));
           }
           worst = std::max(worst, nearest / kGridPerPixel / tolerance);
@@ -92,7 +101,8 @@ double shrinks(const Slice& s, double tolerance) {
 
 TEST(SimplifyArcs, SmoothShapesShrink) {
   const Slice disc = slice_of(220, 220, [](int x, int y) { return std::hypot(x - 110.3, y - 109.6) < 100; });
-  const Slice ellipse = slice_of(300, 120, [](int x, int y) { return std::hypot((x - 150.2) / 140, (y - 60.4) / 50) < 1 ? 2 : 1; });
+  const Slice ellipse = slice_of(
+      300, 120, [](int x, int y) { return std::hypot((x - 150.2) / 140, (y - 60.4) / 50) < 1 ? 2 : 1; });
   const Slice box = slice_of(100, 100, [](int x, int y) { return x > 10 && x < 90 && y > 20 && y < 70; });
   const Slice slope = slice_of(300, 60, [](int x, int y) { return 7 * y > x + 3; });
   EXPECT_EQ(shrinks(box, 0.5), 64);  // 256 cracks, 4 corners
@@ -103,7 +113,9 @@ TEST(SimplifyArcs, SmoothShapesShrink) {
 
 TEST(SimplifyArcs, AnArcFromAJunctionBackToItIsALoop) {
   // The two boxes of label 1 touch by a corner, and nothing is joined: one junction, two loops.
-  const Slice s = slice_of(30, 30, [](int x, int y) { return (x >= 3 && x < 12 && y >= 4 && y < 10) || (x >= 12 && x < 20 && y >= 10 && y < 25) ? 1 : 2; });
+  const Slice s = slice_of(30, 30, [](int x, int y) {
+    return (x >= 3 && x < 12 && y >= 4 && y < 10) || (x >= 12 && x < 20 && y >= 10 && y < 25) ? 1 : 2;
+  });
   const SliceArcs traced = trace(s, false, true);
   ASSERT_EQ(traced.arcs.size(), 3U);
   for (double tolerance : kTolerances_px) EXPECT_EQ(edges_of(traced, tolerance).size(), 12U);  // three boxes

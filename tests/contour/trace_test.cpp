@@ -20,7 +20,8 @@ std::vector<std::pair<Crack, std::pair<int, int>>> cracks_of(const SliceArcs& tr
   std::vector<std::pair<Crack, std::pair<int, int>>> cracks;
   for (const Arc& arc : traced.arcs)
     for (std::size_t i = 0; i + 1 < arc.chain.size(); ++i)
-      cracks.push_back({{arc.chain[i].x, arc.chain[i].y, arc.chain[i + 1].x, arc.chain[i + 1].y}, {arc.left, arc.right}});
+      cracks.push_back(
+          {{arc.chain[i].x, arc.chain[i].y, arc.chain[i + 1].x, arc.chain[i + 1].y}, {arc.left, arc.right}});
   return cracks;
 }
 
@@ -44,7 +45,8 @@ int degree(const Slice& s, int x, int y) {
   return (p[0] != p[1]) + (p[1] != p[2]) + (p[2] != p[3]) + (p[3] != p[0]);
 }
 
-/// docs/contours.md, the table of cases, said once more: 0 stays a junction, 1 SW and NE joined, 2 NW and SE joined.
+/// docs/contours.md, the table of cases, said once more: 0 stays a junction, 1 SW and NE joined, 2 NW and SE
+/// joined.
 int expected_join(const Slice& s, int x, int y, bool joined) {
   const auto p = around(s, x, y);
   if (p[0] == p[2] && p[0] == 0) return 1;
@@ -65,7 +67,8 @@ TEST(TraceArcs, EveryCrackIsInOneArcWithTheLabelsOfTheImage) {
       ASSERT_EQ(std::abs(c[0] - c[2]) + std::abs(c[1] - c[3]), 1) << "seed " << seed;
       ASSERT_EQ(labels, sides(s, c)) << "seed " << seed << " at " << c[0] << " " << c[1];
       ASSERT_NE(labels.first, labels.second);
-      undirected.insert({std::min(c[0], c[2]), std::min(c[1], c[3]), std::max(c[0], c[2]), std::max(c[1], c[3])});
+      undirected.insert(
+          {std::min(c[0], c[2]), std::min(c[1], c[3]), std::max(c[0], c[2]), std::max(c[1], c[3])});
     }
     ASSERT_EQ(undirected.size(), cracks.size()) << "seed " << seed;
   }
@@ -92,7 +95,8 @@ TEST(TraceArcs, ArcsRunFromJunctionToJunctionAndFollowTheCornerRule) {
         // Joined pixels are passed by: the contour turns about one of the other two.
         const int dx = p.x + q.x - 2 * v.x, dy = p.y + q.y - 2 * v.y;  // towards the pixel in the turn
         ASSERT_NE(dx * dy, 0) << "goes straight through a corner, seed " << seed;
-        ASSERT_EQ(dx * dy > 0 ? 2 : 1, expected_join(s, v.x, v.y, joined)) << "seed " << seed << " at " << v.x << " " << v.y;
+        ASSERT_EQ(dx * dy > 0 ? 2 : 1, expected_join(s, v.x, v.y, joined))
+            << "seed " << seed << " at " << v.x << " " << v.y;
       }
     }
   }
@@ -173,7 +177,8 @@ TEST(ExtractSections, AreasArePixelCountsExactly) {
     for (const Section& section : result.stack.sections) {
       ASSERT_EQ(static_cast<std::int64_t>(section.edges.size()), count_cracks(s)) << "seed " << seed;
       for (std::size_t l = 1; l < pixels.size(); ++l)  // the same two products, so not a bit may differ
-        ASSERT_EQ(label_area_mm2(result.stack, section, volume.labels[l].number), static_cast<double>(pixels[l]) * 0.7 * 1.3)
+        ASSERT_EQ(label_area_mm2(result.stack, section, volume.labels[l].number),
+                  static_cast<double>(pixels[l]) * 0.7 * 1.3)
             << "seed " << seed << " label " << l;
     }
   }

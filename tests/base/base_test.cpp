@@ -1,0 +1,112 @@
+// Errors, parallel loops, progress. (AtomicFiles is tested with the writers.)
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+
+namespace stackmesh {
+namespace {
+
+TEST(Error, IsOneLineThatSaysWhatWhereAndHowToMend) {
+  EXPECT_STREQ(Error(ErrorKind::input, "bad", "a.nii", "mend it").what(), "bad, a.nii; mend it");
+  EXPECT_STREQ(Error(ErrorKind::input, "bad", "", "mend it").what(), "bad; mend it");
+  EXPECT_STREQ(Error(ErrorKind::input, "bad", "a.nii", "").what(), "bad, a.nii");
+  EXPECT_STREQ(Error(ErrorKind::input, "bad", "", "").what(), "bad");
+  EXPECT_STREQ(Error(ErrorKind::input, "two\nlines", "odd\r\nname", "a\nb").what(),
+               "two lines, odd  name; a b");
+}
+
+template <class Action>
+ErrorKind kind_of(Action action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("what, where"), std::string::npos);
+    return e.kind();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return ErrorKind::internal;
+}
+
+TEST(Error, KindsAreTheExitCodesOfTheProgram) {
+  EXPECT_EQ(static_cast<int>(kind_of([] { fail_usage("what", "where", "mend"); })), 2);
+  EXPECT_EQ(static_cast<int>(kind_of([] { fail_input("what", "where", "mend"); })), 3);
+  EXPECT_EQ(static_cast<int>(ErrorKind::no_result), 4);
+  EXPECT_EQ(static_cast<int>(kind_of([] { fail_output("what", "where", "mend"); })), 5);
+  EXPECT_EQ(static_cast<int>(kind_of([] { fail_internal("what", "where"); })), 70);
+}
+
+TEST(ParallelFor, CallsEveryIndexOnce) {
+  for (std::size_t count : {0, 1, 2, 3, 1000, 50000})
+    for (int threads : {0, 1, 2, 7, 64}) {
+      std::vector<std::atomic<int>> calls(count);
+      parallel_for(count, threads, [&](std::size_t i) { ++calls.at(i); });
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(calls[i], 1) << i << " of " << count << ", threads " << threads;
+    }
+}
+
+TEST(ParallelFor, RethrowsWhatABodyThrows) {
+  for (int threads : {1, 2}) {
+    std::atomic<int> calls{0};
+    try {
+      parallel_for(10000, threads, [&](std::size_t i) {
+        ++calls;
+        if (i == 77) fail_input("bad slice", "slice 77", "");
+      });
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), ErrorKind::input);
+      EXPECT_STREQ(e.what(), "bad slice, slice 77");
+    }
+    EXPECT_GE(calls, 1);
+    EXPECT_LE(calls, 10000);
+  }
+}
+
+TEST(ParallelFor, LoopsNest) {
+  std::atomic<int> sum{0};
+  parallel_for(20, 2, [&](std::size_t i) {
+    parallel_for(30, 2, [&](std::size_t j) { sum += static_cast<int>(i * j); });
+  });
+  EXPECT_EQ(sum, 190 * 435);
+}
+
+TEST(ParallelFor, IsSilentWhenAskedForMoreThreadsThanThereAre) {
+  testing::internal::CaptureStderr();
+  parallel_for(1000, 500, [](std::size_t) {});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(ThreadCount, ZeroIsTheMachine) {
+  EXPECT_GE(thread_count(0), 1);
+  EXPECT_EQ(thread_count(3), 3);
+  EXPECT_EQ(thread_count(-1), thread_count(0));
+}
+
+std::string shown(ProgressMode mode) {
+  testing::internal::CaptureStderr();  // no terminal
+  const auto progress = make_terminal_progress(mode);
+  progress->begin("read");
+  for (int i = 0; i <= 100; ++i) progress->advance(i / 100.0);
+  progress->end();
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, PlainIsALineAStageAndTheOthersAreSilentInAPipe) {
+  EXPECT_EQ(shown(ProgressMode::none), "");
+  EXPECT_EQ(shown(ProgressMode::automatic), "");
+  const std::string plain = shown(ProgressMode::plain);
+  EXPECT_EQ(plain.rfind("read ", 0), 0U) << plain;
+  EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 1) << plain;
+  EXPECT_EQ(plain.find('\r'), std::string::npos) << plain;
+}
+
+}  // namespace
+}  // namespace stackmesh

@@ -1,0 +1,134 @@
+// The types in which the stages meet: labels and their selection, frames, areas.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "model/label_volume.h"
+#include "model/stack.h"
+#include "random_stacks.h"
+
+namespace stackmesh {
+namespace {
+
+using Indices = std::vector<std::size_t>;
+
+const std::vector<LabelInfo> kLabels = {{0, ""},    {1, "heart"}, {4, "lung-2"}, {7, ""},
+                                        {8, "3-9"}, {9, "femur"}, {1000, "12"},  {70000, "femur"}};
+
+TEST(ResolveLabels, TakesNumbersRangesAndNames) {
+  EXPECT_EQ(resolve_labels(kLabels, ""), (Indices{1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(resolve_labels(kLabels, "4"), Indices{2});
+  EXPECT_EQ(resolve_labels(kLabels, "9,1"), (Indices{1, 5}));
+  EXPECT_EQ(resolve_labels(kLabels, "4,4,4"), Indices{2});
+  EXPECT_EQ(resolve_labels(kLabels, "7-9"), (Indices{3, 4, 5}));
+  EXPECT_EQ(resolve_labels(kLabels, "0-5"), (Indices{1, 2}));  // no background
+  EXPECT_EQ(resolve_labels(kLabels, "2-6,heart"), (Indices{1, 2}));
+  EXPECT_EQ(resolve_labels(kLabels, "70000"), Indices{7});
+  EXPECT_EQ(resolve_labels(kLabels, "007"), Indices{3});
+  EXPECT_EQ(resolve_labels(kLabels, "1,7-8,femur"), (Indices{1, 3, 4, 5, 7}));  // both of that name
+}
+
+TEST(ResolveLabels, ANameWinsOverANumberOrARange) {
+  EXPECT_EQ(resolve_labels(kLabels, "lung-2"), Indices{2});
+  EXPECT_EQ(resolve_labels(kLabels, "3-9"), Indices{4});
+  EXPECT_EQ(resolve_labels(kLabels, "12"), Indices{6});
+  EXPECT_EQ(resolve_labels(kLabels, "3-9,lung-2,heart,heart"), (Indices{1, 2, 4}));
+}
+
+ErrorKind refusal(const std::string& text, std::string* message = nullptr) {
+  try {
+    resolve_labels(kLabels, text);
+  } catch (const Error& e) {
+    if (message != nullptr) *message = e.what();
+    return e.kind();
+  }
+  ADD_FAILURE() << "accepted: " << text;
+  return ErrorKind::internal;
+}
+
+TEST(ResolveLabels, RefusesWhatIsAbsent) {
+  for (const char* text : {"2", "5-6", "liver", "1,2", "0", "Heart", "-3", "7-", "-", "1-2-3",
+                           "99999999999999999999", "1;4", " 4"})
+    EXPECT_EQ(refusal(text), ErrorKind::input) << text;
+  std::string message;
+  refusal("1,liver", &message);
+  EXPECT_NE(message.find("label 'liver' is not in the input"), std::string::npos) << message;
+  EXPECT_NE(message.find("4 (lung-2), 7, "), std::string::npos) << message;  // what there is
+}
+
+TEST(ResolveLabels, RefusesWhatIsMalformed) {
+  for (const char* text : {",", "1,", ",1", "1,,4", "9-7"})
+    EXPECT_EQ(refusal(text), ErrorKind::usage) << text;
+}
+
+TEST(SelectLabels, TheRestBecomesBackground) {
+  for (int seed = 0; seed < 40; ++seed) {
+    const LabelVolume v = testing_support::random_volume(seed);
+    Indices keep;
+    for (std::size_t l = 1; l < v.labels.size(); l += 2) keep.push_back(l);
+    const LabelVolume kept = select_labels(v, keep, false), merged = select_labels(v, keep, true);
+    ASSERT_EQ(kept.labels.size(), keep.size() + 1);
+    ASSERT_EQ(merged.labels.size(), 2U);
+    EXPECT_EQ(merged.labels[1].number, v.labels[keep[0]].number);  // the smallest
+    EXPECT_EQ(kept.labels[0].number, 0);
+    for (std::size_t i = 0; i < v.voxels.size(); ++i) {
+      const Label was = v.labels[v.voxels[i]].number;
+      const Label expected = v.voxels[i] % 2 != 0 ? was : 0;
+      ASSERT_EQ(kept.labels[kept.voxels[i]].number, expected);
+      ASSERT_EQ(merged.labels[merged.voxels[i]].number, expected != 0 ? merged.labels[1].number : 0);
+    }
+  }
+}
+
+TEST(CountVoxels, CountsEachLabel) {
+  const LabelVolume v = testing_support::volume_of({{"0120", "2200"}, {"0003", "1111"}});
+  EXPECT_EQ(count_voxels(v), (Indices{7, 5, 3, 1}));
+}
+
+TEST(LabelVolume, WorldFollowsSpacingOriginAndAxes) {
+  LabelVolume v;
+  v.spacing_mm = {2, 3, 4};
+  v.origin_mm = {10, 20, 30};
+  v.axes = {Vec3{0, 1, 0}, Vec3{0, 0, -1}, Vec3{1, 0, 0}};
+  const Vec3 p = v.world(1, 2, 3);
+  EXPECT_EQ(p.x, 10 + 12);
+  EXPECT_EQ(p.y, 20 + 2);
+  EXPECT_EQ(p.z, 30 - 6);
+  EXPECT_EQ(v.voxel_volume_mm3(), 24);
+}
+
+TEST(Frame, MapsThereAndBack) {
+  const Frame right{{1, 2, 3}, {Vec3{0.6, 0.8, 0}, Vec3{-0.8, 0.6, 0}, Vec3{0, 0, 1}}};
+  const Frame left{{1, 2, 3}, {Vec3{0.6, 0.8, 0}, Vec3{-0.8, 0.6, 0}, Vec3{0, 0, -1}}};
+  EXPECT_FALSE(right.mirrors());
+  EXPECT_TRUE(left.mirrors());
+  for (const Frame& f : {right, left})
+    EXPECT_LT(norm(f.to_stack(f.to_world({7, -5, 0.25})) - Vec3{7, -5, 0.25}), 1e-12);
+}
+
+TEST(LabelArea, IsSignedByTheSideThatTheLabelIsOn) {
+  Stack stack;
+  stack.grid_x_mm = 0.5;
+  stack.grid_y_mm = 2;
+  const std::int32_t big = 1 << 29;  // the largest coordinates that are allowed
+  Section s{0,
+            {{-big, -big}, {big, -big}, {big, big}, {-big, big}},
+            {{0, 1, 5, 7}, {1, 2, 5, 7}, {2, 3, 5, 7}, {3, 0, 5, 7}}};
+  EXPECT_EQ(label_area_mm2(stack, s, 5), 0x1p60);
+  EXPECT_EQ(label_area_mm2(stack, s, 7), -0x1p60);
+  EXPECT_EQ(label_area_mm2(stack, s, 6), 0);
+}
+
+TEST(EndHalfGap, IsHalfTheOutermostGap) {
+  Stack stack;
+  stack.pixel_mm = 0.8;
+  stack.sections = {{3, {}, {}}};
+  EXPECT_EQ(end_half_gap_mm(stack, false), 0.4);
+  stack.sections = {{0, {}, {}}, {2, {}, {}}, {7, {}, {}}};
+  EXPECT_EQ(end_half_gap_mm(stack, false), 1);
+  EXPECT_EQ(end_half_gap_mm(stack, true), 2.5);
+}
+
+}  // namespace
+}  // namespace stackmesh
