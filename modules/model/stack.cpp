@@ -14,6 +14,7 @@ double label_area_mm2(const Stack& stack, const Section& section, Label label) {
 }
 
 double end_half_gap_mm(const Stack& stack, bool high) {
+  if (stack.end_gap_mm > 0) return 0.5 * stack.end_gap_mm;
   const std::size_t n = stack.sections.size();
   if (n < 2) return 0.5 * stack.pixel_mm;
   const std::size_t k = high ? n - 2 : 0;
