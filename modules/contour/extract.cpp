@@ -67,6 +67,8 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
   stack.grid_x_mm = volume.spacing_mm[axes.u] / kGridPerPixel;
   stack.grid_y_mm = volume.spacing_mm[axes.v] / kGridPerPixel;
   stack.pixel_mm = std::min(volume.spacing_mm[axes.u], volume.spacing_mm[axes.v]);
+  const int period = options.virtual_per_gap + 1;
+  stack.end_gap_mm = period * volume.spacing_mm[axes.w];
   // Stack coordinates start at the outer corner of the first pixel, in the first slice's plane.
   std::array<double, 3> corner = {0, 0, 0};
   corner[axes.u] = corner[axes.v] = -0.5;
@@ -92,6 +94,7 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
     }
     const SliceArcs traced = trace_arcs(slice, rules);
     stack.sections[k] = make_section(traced, volume, options.simplify_px, k * volume.spacing_mm[axes.w]);
+    stack.sections[k].interpolated = k % period != 0;
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;
     if (k == 0) stack.touches_low = labels_in(slice, volume);

@@ -15,6 +15,7 @@ struct ContourOptions {
   StackAxis axis =
       StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
   double simplify_px = 0.5;  ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
+  int virtual_per_gap = 0;    ///< slices of the volume that are interpolated between each two real ones
   int threads = 0;           ///< 0: all
 };
 

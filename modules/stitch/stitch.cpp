@@ -78,7 +78,8 @@ class StackStitcher {
     const auto& border = high ? stack_.touches_high : stack_.touches_low;
     if (end == (high ? sections() - 1 : 0) && std::find(border.begin(), border.end(), label) != border.end()) return true;
     if (extent.first == extent.last) return false;
-    const std::size_t beside = high ? end - 1 : end + 1;
+    std::size_t beside = high ? end - 1 : end + 1;  // the next real section
+    while (stack_.sections[beside].interpolated && beside > 0 && beside + 1 < sections()) high ? --beside : ++beside;
     const double here = label_area_mm2(stack_, stack_.sections[end], label);
     return here >= options_.flat_area_rel * label_area_mm2(stack_, stack_.sections[beside], label);
   }

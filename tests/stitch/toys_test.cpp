@@ -105,8 +105,11 @@ TEST(StitchToys, OnePixelInOneSectionIsKept) {
     const SurfaceCheck check = check_surface(s.complex());
     EXPECT_EQ(surface_of(check, 1).components, 1);
     EXPECT_EQ(surface_of(check, 1).euler, 2);
-    if (caps == Caps::flat) EXPECT_NEAR(surface_of(check, 1).volume_mm3, 2.0, 1e-12);
-    else EXPECT_GT(surface_of(check, 1).volume_mm3, 0.6);  // a double pyramid
+    if (caps == Caps::flat) {
+      EXPECT_NEAR(surface_of(check, 1).volume_mm3, 2.0, 1e-12);
+    } else {
+      EXPECT_GT(surface_of(check, 1).volume_mm3, 0.6);  // a double pyramid
+    }
     for (const Vec3& p : s.complex().points) EXPECT_LE(std::abs(p.z - 2), 1.0) << "an end rises half a gap at most";
   }
 }
