@@ -112,9 +112,9 @@ TEST(LabelArea, IsSignedByTheSideThatTheLabelIsOn) {
   stack.grid_x_mm = 0.5;
   stack.grid_y_mm = 2;
   const std::int32_t big = 1 << 29;  // the largest coordinates that are allowed
-  Section s{0,
-            {{-big, -big}, {big, -big}, {big, big}, {-big, big}},
-            {{0, 1, 5, 7}, {1, 2, 5, 7}, {2, 3, 5, 7}, {3, 0, 5, 7}}};
+  Section s;
+  s.points = {{-big, -big}, {big, -big}, {big, big}, {-big, big}};
+  s.edges = {{0, 1, 5, 7}, {1, 2, 5, 7}, {2, 3, 5, 7}, {3, 0, 5, 7}};
   EXPECT_EQ(label_area_mm2(stack, s, 5), 0x1p60);
   EXPECT_EQ(label_area_mm2(stack, s, 7), -0x1p60);
   EXPECT_EQ(label_area_mm2(stack, s, 6), 0);
@@ -123,11 +123,16 @@ TEST(LabelArea, IsSignedByTheSideThatTheLabelIsOn) {
 TEST(EndHalfGap, IsHalfTheOutermostGap) {
   Stack stack;
   stack.pixel_mm = 0.8;
-  stack.sections = {{3, {}, {}}};
+  stack.sections.resize(1);
   EXPECT_EQ(end_half_gap_mm(stack, false), 0.4);
-  stack.sections = {{0, {}, {}}, {2, {}, {}}, {7, {}, {}}};
+  stack.sections.resize(3);
+  stack.sections[1].z_mm = 2;
+  stack.sections[2].z_mm = 7;
   EXPECT_EQ(end_half_gap_mm(stack, false), 1);
   EXPECT_EQ(end_half_gap_mm(stack, true), 2.5);
+  stack.end_gap_mm = 6;  // sections were interpolated
+  EXPECT_EQ(end_half_gap_mm(stack, false), 3);
+  EXPECT_EQ(end_half_gap_mm(stack, true), 3);
 }
 
 }  // namespace

@@ -219,12 +219,23 @@ TEST(ExtractSections, AnEmptySliceIsAnEmptySection) {
   EXPECT_EQ(stack.sections[1].z_mm, 2.5);
 }
 
+TEST(ExtractSections, MarksInterpolatedSections) {
+  const LabelVolume v = testing_support::volume_of({{"1"}, {"1"}, {"1"}, {"1"}, {"1"}, {"1"}, {"1"}}, 2);
+  ContourOptions options;
+  options.axis = StackAxis::z;
+  options.virtual_per_gap = 2;
+  Progress silent;
+  const Stack stack = extract_sections(v, options, silent).stack;
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_EQ(stack.sections[k].interpolated, k % 3 != 0) << k;
+  EXPECT_EQ(stack.end_gap_mm, 6);  // an end stands for half a gap of the real slices
+}
+
 TEST(ExtractSections, ProgressEndsAtOne) {
   struct Watch : Progress {
     void advance(double fraction) override { last = std::max(last, fraction); }
     double last = 0;
   } watch;
-  extract_sections(testing_support::volume_of({{"11"}, {"11"}}), {StackAxis::z, 0.5, 1}, watch);
+  extract_sections(testing_support::volume_of({{"11"}, {"11"}}), ContourOptions{}, watch);
   EXPECT_EQ(watch.last, 1);
 }
 
