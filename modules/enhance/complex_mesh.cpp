@@ -1,0 +1,354 @@
+#include "enhance/complex_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace stackmesh {
+namespace {
+
+bool holds(const std::array<std::int32_t, 3>& v, std::int32_t x) { return v[0] == x || v[1] == x || v[2] == x; }
+
+std::int32_t third(const std::array<std::int32_t, 3>& v, std::int32_t a, std::int32_t b) {
+  for (std::int32_t x : v)
+    if (x != a && x != b) return x;
+  return -1;
+}
+
+/// True when the triangle runs from a to b.
+bool runs(const std::array<std::int32_t, 3>& v, std::int32_t a, std::int32_t b) {
+  return (v[0] == a && v[1] == b) || (v[1] == a && v[2] == b) || (v[2] == a && v[0] == b);
+}
+
+template <class T>
+void drop(std::vector<T>& list, T x) {
+  const auto it = std::find(list.begin(), list.end(), x);
+  if (it != list.end()) list.erase(it);
+}
+
+template <class T>
+bool has(const std::vector<T>& list, T x) {
+  return std::find(list.begin(), list.end(), x) != list.end();
+}
+
+}  // namespace
+
+double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, bc = c - b, ca = a - c;
+  const double l0 = dot(ab, ab), l1 = dot(bc, bc), l2 = dot(ca, ca);
+  const double twice = norm(cross(ab, ca));
+  double d;  // the smallest angle lies opposite the shortest side
+  if (l0 <= l1 && l0 <= l2)
+    d = -dot(bc, ca);
+  else if (l1 <= l2)
+    d = -dot(ca, ab);
+  else
+    d = -dot(ab, bc);
+  return std::atan2(twice, d);
+}
+
+ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2) : points(complex.points) {
+  std::map<std::pair<Label, Label>, std::int32_t> numbers;
+  for (const InterfaceTriangle& t : complex.triangles) numbers[std::minmax(t.below, t.above)] = 0;
+  for (auto& [pair, n] : numbers) {
+    n = static_cast<std::int32_t>(pairs_.size());
+    pairs_.push_back(pair);
+  }
+  star.resize(points.size());
+  curve.resize(points.size());
+  pinned.assign(points.size(), 0);
+  flat.assign(points.size(), 0);
+  triangles.reserve(complex.triangles.size());
+  for (const InterfaceTriangle& t : complex.triangles) {
+    MeshTriangle m;
+    m.v = t.v;
+    if (t.below > t.above) std::swap(m.v[1], m.v[2]);
+    m.patch = 2 * numbers[std::minmax(t.below, t.above)];
+    for (std::int32_t v : m.v) star[v].push_back(static_cast<std::int32_t>(triangles.size()));
+    triangles.push_back(m);
+  }
+  mark_caps(cap_area_mm2);
+  find_curves();
+  find_pinned();
+}
+
+void ComplexMesh::mark_caps(double cap_area_mm2) {
+  const auto horizontal = [&](std::int32_t t) {
+    const auto& v = triangles[t].v;
+    return points[v[0]].z == points[v[1]].z && points[v[0]].z == points[v[2]].z;
+  };
+  std::vector<char> seen(triangles.size(), 0);
+  std::vector<std::int32_t> region, around;
+  for (std::int32_t s = 0; s < static_cast<std::int32_t>(triangles.size()); ++s) {
+    if (seen[s] || !horizontal(s)) continue;
+    region.assign(1, s);
+    seen[s] = 1;
+    double area = 0;
+    for (std::size_t i = 0; i < region.size(); ++i) {
+      const auto v = triangles[region[i]].v;
+      area += std::abs(area_vector(v).z);
+      for (int k = 0; k < 3; ++k) {
+        edge_triangles(v[k], v[(k + 1) % 3], around);
+        for (std::int32_t t : around)
+          if (!seen[t] && horizontal(t)) {
+            seen[t] = 1;
+            region.push_back(t);
+          }
+      }
+    }
+    if (area < cap_area_mm2) continue;
+    for (std::int32_t t : region) {
+      triangles[t].patch |= 1;
+      for (std::int32_t v : triangles[t].v) flat[v] = 1;
+    }
+  }
+}
+
+void ComplexMesh::find_curves() {
+  std::vector<std::int32_t> around;
+  for (const auto& [a, b] : edges()) {
+    edge_triangles(a, b, around);
+    const bool regular = around.size() == 2 && triangles[around[0]].patch == triangles[around[1]].patch &&
+                         runs(triangles[around[0]].v, a, b) != runs(triangles[around[1]].v, a, b);
+    if (regular) continue;
+    curve[a].push_back(b);
+    curve[b].push_back(a);
+  }
+}
+
+void ComplexMesh::find_pinned() {
+  for (std::size_t v = 0; v < points.size(); ++v)
+    pinned[v] = !star[v].empty() && is_pinched(static_cast<std::int32_t>(v));
+}
+
+/// A free vertex has one closed fan; one on a curve has fans that all run from one curve edge to the other.
+bool ComplexMesh::is_pinched(std::int32_t v) const {
+  if (!curve[v].empty() && curve[v].size() != 2) return false;  // fixed anyway
+  std::vector<std::int32_t> fan;
+  fans(v, fan);
+  const int count = 1 + *std::max_element(fan.begin(), fan.end());
+  if (curve[v].empty()) return count != 1;
+  for (int f = 0; f < count; ++f)
+    for (std::int32_t c : curve[v]) {
+      int touching = 0;
+      for (std::size_t i = 0; i < fan.size(); ++i) touching += fan[i] == f && holds(triangles[star[v][i]].v, c);
+      if (touching != 1) return true;
+    }
+  return false;
+}
+
+bool ComplexMesh::is_curve_edge(std::int32_t a, std::int32_t b) const { return has(curve[a], b); }
+
+bool ComplexMesh::has_edge(std::int32_t a, std::int32_t b) const {
+  for (std::int32_t t : star[a])
+    if (holds(triangles[t].v, b)) return true;
+  return false;
+}
+
+void ComplexMesh::edge_triangles(std::int32_t a, std::int32_t b, std::vector<std::int32_t>& out) const {
+  out.clear();
+  for (std::int32_t t : star[a])
+    if (holds(triangles[t].v, b)) out.push_back(t);
+}
+
+void ComplexMesh::neighbours(std::int32_t v, std::vector<std::int32_t>& out) const {
+  out.clear();
+  for (std::int32_t t : star[v])
+    for (std::int32_t w : triangles[t].v)
+      if (w != v) out.push_back(w);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+void ComplexMesh::fans(std::int32_t v, std::vector<std::int32_t>& out) const {
+  const auto& s = star[v];
+  out.assign(s.size(), -1);
+  std::int32_t count = 0;
+  std::vector<std::int32_t> stack;
+  for (std::size_t first = 0; first < s.size(); ++first) {
+    if (out[first] >= 0) continue;
+    out[first] = count;
+    stack.assign(1, static_cast<std::int32_t>(first));
+    while (!stack.empty()) {
+      const auto& t = triangles[s[stack.back()]].v;
+      stack.pop_back();
+      for (std::size_t j = 0; j < s.size(); ++j) {
+        if (out[j] >= 0) continue;
+        for (std::int32_t w : t)
+          if (w != v && holds(triangles[s[j]].v, w) && !is_curve_edge(v, w)) {
+            out[j] = count;
+            stack.push_back(static_cast<std::int32_t>(j));
+            break;
+          }
+      }
+    }
+    ++count;
+  }
+}
+
+std::vector<std::array<std::int32_t, 2>> ComplexMesh::edges() const {
+  std::vector<std::array<std::int32_t, 2>> out;
+  out.reserve(triangles.size() * 3 / 2);
+  std::vector<std::int32_t> around;
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(points.size()); ++v) {
+    around.clear();
+    for (std::int32_t t : star[v])
+      for (std::int32_t w : triangles[t].v)
+        if (w > v) around.push_back(w);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (std::int32_t w : around) out.push_back({v, w});
+  }
+  return out;
+}
+
+bool ComplexMesh::can_collapse(std::int32_t gone, std::int32_t kept) const {
+  if (is_fixed(gone)) return false;
+  if (!curve[gone].empty()) {
+    if (!is_curve_edge(gone, kept)) return false;
+    for (std::int32_t c : curve[gone])
+      if (c != kept && is_curve_edge(c, kept)) return false;  // a loop of three
+  }
+  // Common neighbours must be the apexes of the edge's triangles, and no triangle of `gone` may land on another.
+  std::int32_t apexes[16];
+  int count = 0;
+  for (std::int32_t t : star[gone])
+    if (holds(triangles[t].v, kept)) {
+      if (count == 16) return false;
+      apexes[count++] = third(triangles[t].v, gone, kept);
+    }
+  if (count == 0) return false;
+  const auto is_apex = [&](std::int32_t w) { return std::find(apexes, apexes + count, w) != apexes + count; };
+  for (std::int32_t t : star[gone]) {
+    const auto& v = triangles[t].v;
+    if (holds(v, kept)) continue;
+    int common = 0;
+    for (std::int32_t w : v) {
+      if (w == gone) continue;
+      const bool shared = is_apex(w);
+      if (!shared && has_edge(kept, w)) return false;
+      common += shared;
+    }
+    if (common < 2) continue;
+    for (std::int32_t s : star[kept]) {
+      bool same = true;
+      for (std::int32_t w : v) same = same && (w == gone || holds(triangles[s].v, w));
+      if (same) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<std::int32_t> ComplexMesh::collapse(std::int32_t gone, std::int32_t kept) {
+  std::vector<std::int32_t> died;
+  for (std::int32_t t : star[gone]) {
+    MeshTriangle& m = triangles[t];
+    if (holds(m.v, kept)) {
+      died.push_back(t);
+      continue;
+    }
+    for (std::int32_t& x : m.v)
+      if (x == gone) x = kept;
+    star[kept].push_back(t);
+  }
+  for (std::int32_t t : died) {
+    for (std::int32_t x : triangles[t].v)
+      if (x != gone) drop(star[x], t);
+    triangles[t].patch = -1;
+  }
+  star[gone].clear();
+  for (std::int32_t c : curve[gone]) {
+    drop(curve[c], gone);
+    if (c != kept) {
+      curve[c].push_back(kept);
+      curve[kept].push_back(c);
+    }
+  }
+  curve[gone].clear();
+  return died;
+}
+
+bool ComplexMesh::can_flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2>& t,
+                           std::array<std::int32_t, 2>& apex) const {
+  if (is_curve_edge(a, b)) return false;
+  int count = 0;
+  for (std::int32_t s : star[a])
+    if (holds(triangles[s].v, b)) {
+      if (count == 2) return false;
+      t[count++] = s;
+    }
+  if (count != 2) return false;
+  if (!runs(triangles[t[0]].v, a, b)) std::swap(t[0], t[1]);
+  apex = {third(triangles[t[0]].v, a, b), third(triangles[t[1]].v, a, b)};
+  return apex[0] != apex[1] && !has_edge(apex[0], apex[1]);
+}
+
+void ComplexMesh::flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2> t, std::array<std::int32_t, 2> apex) {
+  const auto [c, d] = apex;
+  triangles[t[0]].v = {a, d, c};
+  triangles[t[1]].v = {d, b, c};
+  drop(star[b], t[0]);
+  drop(star[a], t[1]);
+  star[d].push_back(t[0]);
+  star[c].push_back(t[1]);
+}
+
+std::int32_t ComplexMesh::split(std::int32_t a, std::int32_t b, const Vec3& p) {
+  const std::int32_t n = static_cast<std::int32_t>(points.size());
+  std::vector<std::int32_t> around;
+  edge_triangles(a, b, around);
+  bool cap = false;
+  points.push_back(p);
+  star.emplace_back();
+  curve.emplace_back();
+  pinned.push_back(0);
+  for (std::int32_t t : around) {
+    MeshTriangle copy = triangles[t];
+    cap = cap || is_cap(copy.patch);
+    const std::int32_t c = third(copy.v, a, b), added = static_cast<std::int32_t>(triangles.size());
+    for (std::int32_t& x : triangles[t].v)
+      if (x == b) x = n;
+    for (std::int32_t& x : copy.v)
+      if (x == a) x = n;
+    drop(star[b], t);
+    star[b].push_back(added);
+    star[c].push_back(added);
+    star[n].push_back(t);
+    star[n].push_back(added);
+    triangles.push_back(copy);
+  }
+  flat.push_back(cap);
+  if (is_curve_edge(a, b)) {
+    std::replace(curve[a].begin(), curve[a].end(), b, n);
+    std::replace(curve[b].begin(), curve[b].end(), a, n);
+    curve[n] = {a, b};
+  }
+  return n;
+}
+
+void ComplexMesh::add_ridge(std::int32_t a, std::int32_t b) {
+  if (is_curve_edge(a, b)) return;
+  curve[a].push_back(b);
+  curve[b].push_back(a);
+}
+
+InterfaceComplex ComplexMesh::to_complex() const {
+  InterfaceComplex out;
+  std::vector<std::int32_t> number(points.size(), -1);
+  for (std::size_t v = 0; v < points.size(); ++v)
+    if (!star[v].empty()) {
+      number[v] = static_cast<std::int32_t>(out.points.size());
+      out.points.push_back(points[v]);
+    }
+  for (const MeshTriangle& t : triangles) {
+    if (t.patch < 0) continue;
+    InterfaceTriangle i;
+    i.v = {number[t.v[0]], number[t.v[1]], number[t.v[2]]};
+    std::tie(i.below, i.above) = labels_of(t.patch);
+    out.triangles.push_back(i);
+  }
+  return out;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,86 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "model/complex.h"
+
+namespace stackmesh {
+
+/// A triangle while the complex is changed: its normal points from the smaller label of its pair to the larger.
+/// `patch` stands for the label pair and for lying in a flat cap; a dead triangle has patch -1.
+struct MeshTriangle {
+  std::array<std::int32_t, 3> v = {0, 0, 0};
+  std::int32_t patch = -1;
+};
+
+/// An interface complex that can be changed. An edge is a *curve* edge when it has other than two triangles, when
+/// its two differ in patch, or when it is a ridge. A vertex with no curve edge is free in its sheet, one with two
+/// is bound to its curve, any other (and a pinched one) is a fixed point. Operations only change the structure;
+/// whether one is allowed is asked of `can_collapse`, `can_flip` and the guard.
+class ComplexMesh {
+ public:
+  /// `cap_area_mm2`: connected, exactly horizontal triangles of at least this area together are a flat cap.
+  ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2);
+
+  std::vector<Vec3> points;
+  std::vector<MeshTriangle> triangles;
+  std::vector<std::vector<std::int32_t>> star;   ///< triangles of each vertex; empty: the vertex is gone
+  std::vector<std::vector<std::int32_t>> curve;  ///< neighbours along curve edges
+  std::vector<char> pinned;                      ///< never moves, never removed
+  std::vector<char> flat;                        ///< on a flat cap: keeps its z
+
+  bool alive(std::int32_t t) const { return triangles[t].patch >= 0; }
+  bool is_fixed(std::int32_t v) const { return pinned[v] || (!curve[v].empty() && curve[v].size() != 2); }
+  bool is_curve_edge(std::int32_t a, std::int32_t b) const;
+  bool has_edge(std::int32_t a, std::int32_t b) const;
+  bool is_cap(std::int32_t patch) const { return patch & 1; }
+  std::pair<Label, Label> labels_of(std::int32_t patch) const { return pairs_[patch >> 1]; }
+
+  /// The (one, two or more) triangles of an edge.
+  void edge_triangles(std::int32_t a, std::int32_t b, std::vector<std::int32_t>& out) const;
+  /// Neighbours of a vertex, ascending.
+  void neighbours(std::int32_t v, std::vector<std::int32_t>& out) const;
+  /// Fan number of each triangle of v's star: fans are parts of the star not cut by curve edges.
+  void fans(std::int32_t v, std::vector<std::int32_t>& out) const;
+  /// All edges (a < b), ascending.
+  std::vector<std::array<std::int32_t, 2>> edges() const;
+
+  /// True when `gone` may be merged into `kept` without changing the topology of any sheet or curve
+  /// (link condition; Dey, Edelsbrunner, Guha, Nekhayev 1999).
+  bool can_collapse(std::int32_t gone, std::int32_t kept) const;
+  /// Returns the numbers of the triangles that died; those of `gone` that stay now hold `kept`.
+  std::vector<std::int32_t> collapse(std::int32_t gone, std::int32_t kept);
+
+  /// The two triangles (in order t0 holds a->b) and their apexes; false for a curve edge or where c d is an edge.
+  bool can_flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2>& t, std::array<std::int32_t, 2>& apex) const;
+  /// Turns the edge of t[0] = (a b c), t[1] = (b a d) into c d.
+  void flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2> t, std::array<std::int32_t, 2> apex);
+
+  /// Puts a vertex at p on the edge; returns it. Triangles that were added are the last ones.
+  std::int32_t split(std::int32_t a, std::int32_t b, const Vec3& p);
+
+  /// Makes an edge a ridge (no-op if it is a curve edge already).
+  void add_ridge(std::int32_t a, std::int32_t b);
+  /// Finds pinched vertices anew.
+  void find_pinned();
+
+  Vec3 area_vector(const std::array<std::int32_t, 3>& v) const {
+    return 0.5 * cross(points[v[1]] - points[v[0]], points[v[2]] - points[v[0]]);
+  }
+
+  InterfaceComplex to_complex() const;
+
+ private:
+  void mark_caps(double cap_area_mm2);
+  void find_curves();
+  bool is_pinched(std::int32_t v) const;
+  std::vector<std::pair<Label, Label>> pairs_;
+};
+
+/// Smallest angle of a triangle, as its cosine's negative would order it: the sine-free measure used in loops is
+/// the angle itself, radians.
+double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace stackmesh

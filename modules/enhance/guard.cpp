@@ -1,0 +1,212 @@
+#include "enhance/guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace stackmesh {
+
+TriangleGrid::Box TriangleGrid::box_of(const Corners3& c, double margin) {
+  Box b;
+  const auto set = [&](int k, double x, double y, double z) {
+    const float low = static_cast<float>(std::min({x, y, z}) - margin), high = static_cast<float>(std::max({x, y, z}) + margin);
+    b.low[k] = std::nextafter(low, -std::numeric_limits<float>::infinity());
+    b.high[k] = std::nextafter(high, std::numeric_limits<float>::infinity());
+  };
+  set(0, c[0].x, c[1].x, c[2].x);
+  set(1, c[0].y, c[1].y, c[2].y);
+  set(2, c[0].z, c[1].z, c[2].z);
+  return b;
+}
+
+void TriangleGrid::build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm) {
+  inverse_ = static_cast<float>(1 / cell_mm);
+  std::size_t size = 1024;
+  while (size < mesh.triangles.size()) size *= 2;
+  mask_ = size - 1;
+  buckets_.assign(size, {});
+  boxes_.assign(mesh.triangles.size(), Box());
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t)
+    if (mesh.alive(t)) {
+      const auto& v = mesh.triangles[t].v;
+      insert(t, {points[v[0]], points[v[1]], points[v[2]]});
+    }
+}
+
+void TriangleGrid::insert(std::int32_t t, const Corners3& corners) {
+  if (static_cast<std::size_t>(t) >= boxes_.size()) boxes_.resize(t + 1 + t / 4);
+  const Box b = boxes_[t] = box_of(corners, 0);
+  for (std::int32_t i = cell(b.low[0]); i <= cell(b.high[0]); ++i)
+    for (std::int32_t j = cell(b.low[1]); j <= cell(b.high[1]); ++j)
+      for (std::int32_t k = cell(b.low[2]); k <= cell(b.high[2]); ++k) buckets_[bucket(i, j, k)].push_back(t);
+}
+
+void TriangleGrid::remove(std::int32_t t) {
+  const Box b = boxes_[t];
+  for (std::int32_t i = cell(b.low[0]); i <= cell(b.high[0]); ++i)
+    for (std::int32_t j = cell(b.low[1]); j <= cell(b.high[1]); ++j)
+      for (std::int32_t k = cell(b.low[2]); k <= cell(b.high[2]); ++k) {
+        auto& list = buckets_[bucket(i, j, k)];
+        const auto it = std::find(list.begin(), list.end(), t);
+        if (it == list.end()) continue;
+        *it = list.back();
+        list.pop_back();
+      }
+  boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}};  // covers no cell
+}
+
+Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg) : mesh_(mesh), cosine_limit_(std::cos(sheet_angle_deg * M_PI / 180)) {}
+
+void Guard::rebuild(double cell_mm) {
+  grid_.build(mesh_, mesh_.points, cell_mm);
+  known_ = mesh_.triangles.size();
+}
+
+Corners3 Guard::corners(const std::array<std::int32_t, 3>& v, const Change* c) const {
+  Corners3 out;
+  for (int k = 0; k < 3; ++k) out[k] = c && v[k] == c->moved ? c->to : mesh_.points[v[k]];
+  return out;
+}
+
+double Guard::narrowest_before(const Change& c) const {
+  double cosine = -1;
+  for (std::int32_t r : *c.removed) {
+    const auto& v = mesh_.triangles[r].v;
+    const Corners3 s = corners(v, nullptr);
+    for (int k = 0; k < 3; ++k)
+      for (std::int32_t o : mesh_.star[v[k]]) {
+        if (o == r) continue;
+        const SharedCorners h = shared_corners(v, mesh_.triangles[o].v);
+        if (h.count == 2) cosine = std::max(cosine, sheet_cosine(s, corners(mesh_.triangles[o].v, nullptr), h));
+      }
+  }
+  return cosine;
+}
+
+double Guard::nearest_before(const Change& c, const std::array<std::int32_t, 3>& w) const {
+  const Corners3 t = corners(w, nullptr);
+  double best = std::numeric_limits<double>::infinity();
+  for (std::int32_t r : *c.removed) {
+    const auto& v = mesh_.triangles[r].v;
+    if (shared_corners(v, w).count > 0) return 0;
+    best = std::min(best, squared_distance(corners(v, nullptr), t));
+  }
+  return best;
+}
+
+bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w,
+                         const Change& c) {
+  const SharedCorners h = shared_corners(v, w);
+  const Corners3 t = corners(w, &c);
+  if (h.count == 0) {
+    if (certainly_apart(s, t, c.clearance_mm)) return true;
+    if (triangles_meet(s, t, h)) return ++refused_contact, false;
+    const double d = squared_distance(s, t), floor = 1e-9 * c.clearance_mm;
+    if (d > c.clearance_mm * c.clearance_mm || (d > floor * floor && d >= nearest_before(c, w))) return true;
+    return ++refused_clearance, false;
+  }
+  if (h.count == 2) {
+    const double cosine = sheet_cosine(s, t, h);
+    if (cosine <= cosine_limit_) return true;
+    if (cosine > narrowest_before(c) + 1e-9 || triangles_meet(s, t, h)) return ++refused_angle, false;
+    return true;
+  }
+  if (triangles_meet(s, t, h)) return ++refused_contact, false;
+  return true;
+}
+
+bool Guard::allows(const Change& c) {
+  if (stamp_.size() < mesh_.triangles.size()) stamp_.resize(mesh_.triangles.size() * 5 / 4 + 16, 0);
+  ++now_;
+  for (std::int32_t r : *c.removed) stamp_[r] = now_;
+  const auto& added = *c.added;
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const Corners3 s = corners(added[i], &c);
+    for (std::size_t j = i + 1; j < added.size(); ++j)
+      if (!pair_allowed(added[i], s, added[j], c)) return false;
+    const bool ok = grid_.query(s, c.clearance_mm, [&](std::int32_t t) {
+      return stamp_[t] == now_ || pair_allowed(added[i], s, mesh_.triangles[t].v, c);
+    });
+    if (!ok) return false;
+  }
+  return true;
+}
+
+void Guard::update(const std::vector<std::int32_t>& touched) {
+  const auto known = [&](std::int32_t t) { return static_cast<std::size_t>(t) < known_; };
+  for (std::int32_t t : touched) {
+    if (known(t)) grid_.remove(t);
+    if (mesh_.alive(t)) grid_.insert(t, corners(mesh_.triangles[t].v, nullptr));
+  }
+  known_ = std::max(known_, mesh_.triangles.size());
+}
+
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<Vec3>& before,
+                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
+                                         const MoveLimits& limits, int threads) {
+  const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree), clearance_mm = limits.clearance_mm;
+  const double corner = limits.corner_angle_deg * degree, turn = std::cos(limits.turn_deg * degree);
+  const auto at = [&](const std::vector<Vec3>& p, std::int32_t t) {
+    const auto& v = mesh.triangles[t].v;
+    return Corners3{p[v[0]], p[v[1]], p[v[2]]};
+  };
+  const auto offends = [&](std::int32_t i, std::int32_t j, const Corners3& s) {
+    const SharedCorners h = shared_corners(mesh.triangles[i].v, mesh.triangles[j].v);
+    const Corners3 t = at(points, j);
+    if (h.count == 0) {
+      if (certainly_apart(s, t, clearance_mm)) return false;
+      if (triangles_meet(s, t, h)) return true;
+      const double d = squared_distance(s, t);
+      return d < clearance_mm * clearance_mm && d < squared_distance(at(before, i), at(before, j));
+    }
+    if (h.count == 2) {
+      const double cosine = sheet_cosine(s, t, h);
+      if (cosine <= limit) return false;
+      return cosine > sheet_cosine(at(before, i), at(before, j), h) || triangles_meet(s, t, h);
+    }
+    return triangles_meet(s, t, h);
+  };
+  const auto spoiled = [&](std::int32_t i, const Corners3& s) {
+    const Vec3 area = cross(s[1] - s[0], s[2] - s[0]);
+    if (!(dot(area, area) > 0)) return true;
+    if (corner == 0 && limits.turn_deg == 0) return false;
+    const Corners3 b = at(before, i);
+    if (corner > 0) {
+      const double angle = smallest_angle(s[0], s[1], s[2]);
+      if (angle < corner && angle < smallest_angle(b[0], b[1], b[2])) return true;
+    }
+    if (limits.turn_deg == 0) return false;
+    const Vec3 old = cross(b[1] - b[0], b[2] - b[0]);
+    return dot(old, area) < turn * std::sqrt(dot(old, old) * dot(area, area)) * (1 - 1e-12);
+  };
+  constexpr std::size_t kChunk = 1024;
+  const std::size_t chunks = (suspects.size() + kChunk - 1) / kChunk;
+  std::vector<std::vector<std::int32_t>> found(chunks);
+  std::vector<char> is_suspect(mesh.triangles.size(), 0);
+  for (std::int32_t t : suspects) is_suspect[t] = 1;
+  parallel_for(chunks, threads, [&](std::size_t chunk) {
+    auto& mine = found[chunk];
+    for (std::size_t n = chunk * kChunk; n < std::min(suspects.size(), (chunk + 1) * kChunk); ++n) {
+      const std::int32_t i = suspects[n];
+      const Corners3 s = at(points, i);
+      if (spoiled(i, s)) mine.push_back(i);
+      grid.query(s, clearance_mm, [&](std::int32_t j) {
+        if (j == i || (is_suspect[j] && j < i)) return true;
+        if (offends(i, j, s)) {
+          mine.push_back(i);
+          mine.push_back(j);
+        }
+        return true;
+      });
+    }
+  });
+  std::vector<std::int32_t> out;
+  for (const auto& f : found) out.insert(out.end(), f.begin(), f.end());
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,135 @@
+#include "enhance/reference.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "enhance/contact.h"
+
+namespace stackmesh {
+
+std::size_t Reference::Cells::bucket(std::int32_t i, std::int32_t j, std::int32_t k) const {
+  return (static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^
+          static_cast<std::uint32_t>(k) * 83492791u) & mask;
+}
+
+template <class Corners>
+void Reference::Cells::build(std::size_t count, double cell_mm, Corners corners) {
+  inverse = 1 / cell_mm;
+  std::size_t size = 256;
+  while (size < count) size *= 2;
+  mask = size - 1;
+  first.assign(size + 1, 0);
+  const auto each_cell = [&](std::size_t n, auto body) {
+    Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    for (const Vec3& p : corners(n)) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    for (std::int32_t i = cell(low.x); i <= cell(high.x); ++i)
+      for (std::int32_t j = cell(low.y); j <= cell(high.y); ++j)
+        for (std::int32_t k = cell(low.z); k <= cell(high.z); ++k) body(bucket(i, j, k));
+  };
+  for (std::size_t n = 0; n < count; ++n) each_cell(n, [&](std::size_t b) { ++first[b + 1]; });
+  for (std::size_t b = 0; b < size; ++b) first[b + 1] += first[b];
+  items.resize(first[size]);
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (std::size_t n = 0; n < count; ++n) each_cell(n, [&](std::size_t b) { items[next[b]++] = static_cast<std::int32_t>(n); });
+}
+
+template <class Visit>
+void Reference::Cells::around(const Vec3& p, double r, Visit visit) const {
+  for (std::int32_t i = cell(p.x - r); i <= cell(p.x + r); ++i)
+    for (std::int32_t j = cell(p.y - r); j <= cell(p.y + r); ++j)
+      for (std::int32_t k = cell(p.z - r); k <= cell(p.z + r); ++k) {
+        const std::size_t b = bucket(i, j, k);
+        for (std::uint32_t n = first[b]; n < first[b + 1]; ++n) visit(items[n]);
+      }
+}
+
+std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b) {
+  std::vector<std::int32_t> around;
+  mesh.edge_triangles(a, b, around);
+  for (std::int32_t& t : around) t = mesh.triangles[t].patch;
+  std::sort(around.begin(), around.end());
+  std::uint64_t key = 1469598103934665603ull;
+  for (std::int32_t patch : around) key = (key ^ static_cast<std::uint64_t>(patch + 1)) * 1099511628211ull;
+  return key;
+}
+
+Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm) {
+  for (const MeshTriangle& t : mesh.triangles) {
+    if (t.patch < 0) continue;
+    Face f;
+    f.patch = t.patch;
+    const Vec3 area = mesh.area_vector(t.v);
+    const double size = norm(area);
+    for (int k = 0; k < 3; ++k) {
+      f.p[k] = mesh.points[t.v[k]];
+      Vec3 sum;
+      for (std::int32_t o : mesh.star[t.v[k]]) {
+        if (mesh.triangles[o].patch != t.patch) continue;
+        const Vec3 other = mesh.area_vector(mesh.triangles[o].v);
+        if (dot(other, area) > 0.5 * size * norm(other)) sum = sum + other;
+      }
+      const double l = norm(sum);
+      f.n[k] = l > 0 ? (1 / l) * sum : Vec3{};
+    }
+    faces_.push_back(f);
+  }
+  for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
+    for (std::int32_t b : mesh.curve[a])
+      if (a < b) segments_.push_back({mesh.points[a], mesh.points[b], curve_key(mesh, a, b)});
+  face_cells_.build(faces_.size(), cell_mm, [&](std::size_t n) { return faces_[n].p; });
+  segment_cells_.build(segments_.size(), cell_mm, [&](std::size_t n) { return std::array<Vec3, 2>{segments_[n].a, segments_[n].b}; });
+}
+
+std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm) const {
+  double best = std::numeric_limits<double>::infinity();
+  const Face* face = nullptr;
+  Vec3 foot;
+  for (double r = std::min(0.5 * cell_mm_, reach_mm);; r = std::min(2 * r, reach_mm)) {
+    face_cells_.around(p, r, [&](std::int32_t n) {
+      const Face& f = faces_[n];
+      if (f.patch != patch) return;
+      const Vec3 q = nearest_on_triangle(p, f.p[0], f.p[1], f.p[2]), d = p - q;
+      if (dot(d, d) < best) {
+        best = dot(d, d);
+        face = &f;
+        foot = q;
+      }
+    });
+    if (best <= r * r) break;
+    if (r >= reach_mm) return std::nullopt;
+  }
+  const Vec3 n = cross(face->p[1] - face->p[0], face->p[2] - face->p[0]);
+  const double size = dot(n, n);
+  if (!(size > 0)) return Foot{foot, {}};
+  Vec3 bulged, normal;
+  for (int k = 0; k < 3; ++k) {
+    const double w = dot(n, cross(face->p[(k + 1) % 3] - foot, face->p[(k + 2) % 3] - foot)) / size;
+    bulged = bulged + w * (foot - dot(foot - face->p[k], face->n[k]) * face->n[k]);
+    normal = normal + w * face->n[k];
+  }
+  const double l = norm(normal);
+  return Foot{foot + 0.6 * (bulged - foot), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n};
+}
+
+std::optional<Vec3> Reference::nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const {
+  double best = std::numeric_limits<double>::infinity();
+  Vec3 foot;
+  for (double r = std::min(0.5 * cell_mm_, reach_mm);; r = std::min(2 * r, reach_mm)) {
+    segment_cells_.around(p, r, [&](std::int32_t n) {
+      const Segment& s = segments_[n];
+      if (s.key != key) return;
+      const Vec3 q = nearest_on_segment(p, s.a, s.b), d = p - q;
+      if (dot(d, d) < best) {
+        best = dot(d, d);
+        foot = q;
+      }
+    });
+    if (best <= r * r) return foot;
+    if (r >= reach_mm) return std::nullopt;
+  }
+}
+
+}  // namespace stackmesh

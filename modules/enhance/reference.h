@@ -1,0 +1,57 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "enhance/complex_mesh.h"
+
+namespace stackmesh {
+
+/// The surface that a remeshed complex stands for: a copy of its triangles and curves, searched by place and patch.
+/// Between the vertices it bulges to the planes of their normals (Phong tessellation), which makes it smooth to the eye
+/// and nearly G1.
+class Reference {
+ public:
+  Reference(const ComplexMesh& mesh, double cell_mm);
+
+  struct Foot {
+    Vec3 point, normal;
+  };
+  /// Nearest point on triangles of that patch, not further than `reach_mm`.
+  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm) const;
+  /// Nearest point on curves between the same patches as the curve of `key`.
+  std::optional<Vec3> nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const;
+
+  /// What tells curves apart: the patches that meet there.
+  static std::uint64_t curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b);
+
+ private:
+  struct Cells {
+    double inverse = 1;
+    std::size_t mask = 0;
+    std::vector<std::uint32_t> first;
+    std::vector<std::int32_t> items;
+    std::int32_t cell(double x) const { return static_cast<std::int32_t>(std::floor(x * inverse)); }
+    std::size_t bucket(std::int32_t i, std::int32_t j, std::int32_t k) const;
+    template <class Corners>
+    void build(std::size_t count, double cell_mm, Corners corners);
+    template <class Visit>
+    void around(const Vec3& p, double r, Visit visit) const;
+  };
+  struct Face {
+    std::array<Vec3, 3> p, n;  ///< corners and their normals
+    std::int32_t patch;
+  };
+  struct Segment {
+    Vec3 a, b;
+    std::uint64_t key;
+  };
+  double cell_mm_;
+  std::vector<Face> faces_;
+  std::vector<Segment> segments_;
+  Cells face_cells_, segment_cells_;
+};
+
+}  // namespace stackmesh

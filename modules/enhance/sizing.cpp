@@ -1,0 +1,189 @@
+#include "enhance/sizing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "base/parallel.h"
+#include "enhance/guard.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr std::size_t kChunk = 1024;
+
+template <class Body>
+void for_range(std::size_t count, int threads, Body body) {
+  parallel_for((count + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
+    for (std::size_t v = chunk * kChunk; v < std::min(count, (chunk + 1) * kChunk); ++v) body(static_cast<std::int32_t>(v));
+  });
+}
+
+Vec3 unit(const Vec3& a) {
+  const double l = norm(a);
+  return l > 0 ? (1 / l) * a : Vec3{};
+}
+
+class Sizing {
+ public:
+  Sizing(const ComplexMesh& mesh, const SizingOptions& options) : mesh_(mesh), o_(options) {}
+
+  std::vector<double> run() {
+    asked();
+    if (!o_.edge_length_mm) curvature();
+    thickness();
+    grade();
+    return std::move(size_);
+  }
+
+ private:
+  void asked() {
+    size_.assign(mesh_.points.size(), 0);
+    fixed_.assign(mesh_.points.size(), 0);
+    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+      double s = 1e300;
+      for (std::int32_t t : mesh_.star[v]) {
+        const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
+        for (Label l : {below, above}) {
+          const auto it = o_.label_edge_mm.find(l);
+          if (l != 0 && it != o_.label_edge_mm.end()) s = std::min(s, it->second);
+        }
+      }
+      fixed_[v] = s < 1e300;
+      size_[v] = s < 1e300 ? s : o_.edge_length_mm.value_or(o_.edge_max_mm);
+    });
+  }
+
+  /// From normals averaged over a few rings, so that what is left of the voxels' steps does not count as curvature.
+  void curvature() {
+    const std::size_t n = mesh_.points.size();
+    std::vector<Vec3> normal(n), next(n);
+    std::vector<double> bend(n, 0), smooth(n, 0);
+    for_range(n, o_.threads, [&](std::int32_t v) {
+      Vec3 sum;
+      if (mesh_.curve[v].empty())
+        for (std::int32_t t : mesh_.star[v]) sum = sum + mesh_.area_vector(mesh_.triangles[t].v);
+      normal[v] = unit(sum);
+    });
+    const auto averaged = [&](auto& from, auto& to, auto share) {
+      for_range(n, o_.threads, [&](std::int32_t v) {
+        to[v] = from[v];
+        if (!mesh_.curve[v].empty()) return;
+        for (std::int32_t t : mesh_.star[v])
+          for (std::int32_t w : mesh_.triangles[t].v)
+            if (w != v && mesh_.curve[w].empty()) to[v] = to[v] + share * from[w];
+      });
+      std::swap(from, to);
+    };
+    for (int pass = 0; pass < 3; ++pass) {
+      averaged(normal, next, 0.5);
+      for_range(n, o_.threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
+    }
+    for_range(n, o_.threads, [&](std::int32_t v) {
+      if (!mesh_.curve[v].empty()) {
+        if (mesh_.curve[v].size() != 2) return;
+        const Vec3 a = mesh_.points[mesh_.curve[v][0]] - mesh_.points[v], b = mesh_.points[v] - mesh_.points[mesh_.curve[v][1]];
+        const double l = 0.5 * (norm(a) + norm(b));
+        if (l > 0) bend[v] = 0.5 * norm(unit(a) - unit(b)) / l;  // half: a curve keeps some of its steps
+        return;
+      }
+      for (std::int32_t t : mesh_.star[v])
+        for (std::int32_t w : mesh_.triangles[t].v) {
+          if (w == v || !mesh_.curve[w].empty()) continue;
+          const Vec3 d = mesh_.points[w] - mesh_.points[v];
+          const double l = dot(d, d);
+          if (l > 0) bend[v] = std::max(bend[v], std::abs(dot(normal[w] - normal[v], d)) / l);
+        }
+    });
+    for_range(n, o_.threads, [&](std::int32_t v) {  // mean over the neighbours: one odd edge does not decide
+      double sum = bend[v], count = 1;
+      for (std::int32_t t : mesh_.star[v])
+        for (std::int32_t w : mesh_.triangles[t].v)
+          if (w != v) {
+            sum += 0.5 * bend[w];
+            count += 0.5;
+          }
+      smooth[v] = sum / count;
+    });
+    for_range(n, o_.threads, [&](std::int32_t v) {
+      if (fixed_[v]) return;
+      const double r = smooth[v] > 0 ? 1 / smooth[v] : 1e300, d = std::min(o_.deviation_mm, r);
+      size_[v] = std::clamp(r > 1e6 * o_.edge_max_mm ? o_.edge_max_mm : 2 * std::sqrt(d * (2 * r - d)), o_.edge_min_mm, o_.edge_max_mm);
+    });
+  }
+
+  /// Rays from both sides of every vertex, up to the distance that would matter.
+  void thickness() {
+    double mean = 0, reach = 0;
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < size_.size(); ++v)
+      if (!mesh_.star[v].empty()) {
+        mean += size_[v];
+        ++count;
+      }
+    if (count == 0) return;
+    mean /= static_cast<double>(count);
+    reach = o_.edges_across * mean;
+    TriangleGrid grid;
+    grid.build(mesh_, mesh_.points, std::max(mean, o_.edge_min_mm));
+    std::vector<double> thin(size_.size(), 1e300);
+    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+      if (mesh_.star[v].empty() || mesh_.is_fixed(v) || !mesh_.curve[v].empty()) return;
+      Vec3 n;
+      for (std::int32_t t : mesh_.star[v]) n = n + mesh_.area_vector(mesh_.triangles[t].v);
+      n = unit(n);
+      const auto [below, above] = mesh_.labels_of(mesh_.triangles[mesh_.star[v][0]].patch);
+      for (int side = 0; side < 2; ++side) {
+        if ((side == 0 ? below : above) == 0) continue;
+        const Vec3 from = mesh_.points[v], d = (side == 0 ? -1.0 : 1.0) * n, to = from + reach * d;
+        grid.query({from, to, to}, 0, [&](std::int32_t t) {
+          const auto& w = mesh_.triangles[t].v;
+          if (w[0] == v || w[1] == v || w[2] == v) return true;
+          const Vec3 a = mesh_.points[w[0]], e = mesh_.points[w[1]] - a, f = mesh_.points[w[2]] - a;
+          const Vec3 h = cross(d, f);
+          const double det = dot(e, h);
+          if (std::abs(det) < 1e-12 * norm(e) * norm(f)) return true;
+          const Vec3 s = from - a, q = cross(s, e);
+          const double u = dot(s, h) / det, x = dot(d, q) / det, l = dot(f, q) / det;
+          if (u >= 0 && x >= 0 && u + x <= 1 && l > 0) thin[v] = std::min(thin[v], l);
+          return true;
+        });
+      }
+    });
+    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+      if (thin[v] < 1e300) size_[v] = std::clamp(thin[v] / o_.edges_across, std::min(o_.edge_min_mm, size_[v]), size_[v]);
+    });
+  }
+
+  /// H-correction [Borouchaki, Hecht, Frey 1998]: sizes grow along the surface by at most the gradation.
+  void grade() {
+    const double slope = std::log(o_.gradation);
+    using Entry = std::pair<double, std::int32_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(size_.size()); ++v)
+      if (!mesh_.star[v].empty()) queue.push({size_[v], v});
+    while (!queue.empty()) {
+      const auto [s, v] = queue.top();
+      queue.pop();
+      if (s > size_[v]) continue;
+      for (std::int32_t t : mesh_.star[v])
+        for (std::int32_t w : mesh_.triangles[t].v) {
+          const double limit = s + slope * norm(mesh_.points[w] - mesh_.points[v]);
+          if (w == v || size_[w] <= limit) continue;
+          size_[w] = limit;
+          queue.push({limit, w});
+        }
+    }
+  }
+
+  const ComplexMesh& mesh_;
+  const SizingOptions& o_;
+  std::vector<double> size_;
+  std::vector<char> fixed_;
+};
+
+}  // namespace
+
+std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options) { return Sizing(mesh, options).run(); }
+
+}  // namespace stackmesh

@@ -1,0 +1,23 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "enhance/complex_mesh.h"
+
+namespace stackmesh {
+
+struct SizingOptions {
+  std::optional<double> edge_length_mm;   ///< uniform; unset: by curvature
+  std::map<Label, double> label_edge_mm;  ///< per label; where labels meet the smaller counts
+  double deviation_mm = 0.5;              ///< by curvature: largest distance of an edge from the surface
+  double edge_min_mm = 1, edge_max_mm = 10;
+  double gradation = 1.3;                 ///< lengths of neighbouring edges differ by at most this factor
+  double edges_across = 2;                ///< edges that should fit across a wall, as far as edge_min allows
+  int threads = 0;
+};
+
+/// Edge length asked for at every vertex, mm.
+std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options);
+
+}  // namespace stackmesh

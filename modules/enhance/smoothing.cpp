@@ -1,0 +1,207 @@
+#include "enhance/smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "enhance/guard.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr std::size_t kChunk = 2048;
+
+template <class Body>
+void for_vertices(std::size_t count, int threads, Body body) {
+  parallel_for((count + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
+    for (std::size_t v = chunk * kChunk; v < std::min(count, (chunk + 1) * kChunk); ++v) body(v);
+  });
+}
+
+/// Whom each vertex averages over: its neighbours, on a curve those along it, none for a fixed point.
+struct Neighbours {
+  std::vector<std::size_t> first;
+  std::vector<std::int32_t> list;
+
+  explicit Neighbours(const ComplexMesh& mesh) {
+    std::vector<std::int32_t> around;
+    first.push_back(0);
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(mesh.points.size()); ++v) {
+      around.clear();
+      if (!mesh.star[v].empty() && !mesh.is_fixed(v)) {
+        if (mesh.curve[v].empty())
+          mesh.neighbours(v, around);
+        else
+          around = mesh.curve[v];
+      }
+      list.insert(list.end(), around.begin(), around.end());
+      first.push_back(list.size());
+    }
+  }
+
+  Vec3 mean(const std::vector<Vec3>& p, std::size_t v) const {
+    Vec3 sum;
+    for (std::size_t i = first[v]; i < first[v + 1]; ++i) sum = sum + p[list[i]];
+    return (1.0 / static_cast<double>(first[v + 1] - first[v])) * sum;
+  }
+  bool moves(std::size_t v) const { return first[v] != first[v + 1]; }
+};
+
+/// Smoothed places without any guard, within the limits.
+std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOptions& o) {
+  const std::size_t n = mesh.points.size();
+  const Neighbours around(mesh);
+  std::vector<Vec3> p = mesh.points, q = p, b(n);
+  const std::vector<Vec3>& origin = mesh.points;
+  const auto limited = [&](std::size_t v, Vec3 to) {
+    Vec3 d = to - origin[v];
+    if (mesh.flat[v]) d.z = 0;
+    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) + d.z * d.z / (o.limit_z_mm * o.limit_z_mm));
+    return s > 1 ? origin[v] + (1 / s) * d : origin[v] + d;
+  };
+  const bool taubin = o.taubin_lambda != 0;
+  for (int pass = 0; pass < o.passes; ++pass) {
+    if (taubin) {
+      for (double factor : {o.taubin_lambda, o.taubin_mu}) {
+        for_vertices(n, o.threads, [&](std::size_t v) {
+          if (around.moves(v)) q[v] = p[v] + factor * (around.mean(p, v) - p[v]);
+        });
+        std::swap(p, q);
+      }
+      for_vertices(n, o.threads, [&](std::size_t v) {
+        if (around.moves(v)) p[v] = limited(v, p[v]);
+      });
+      continue;
+    }
+    for_vertices(n, o.threads, [&](std::size_t v) {
+      if (!around.moves(v)) return;
+      q[v] = around.mean(p, v);
+      b[v] = q[v] - (o.alpha * origin[v] + (1 - o.alpha) * p[v]);
+    });
+    for_vertices(n, o.threads, [&](std::size_t v) {
+      if (around.moves(v)) p[v] = limited(v, q[v] - (o.beta * b[v] + (1 - o.beta) * around.mean(b, v)));
+    });
+    q = p;
+  }
+  return p;
+}
+
+double mean_edge(const ComplexMesh& mesh) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const MeshTriangle& t : mesh.triangles)
+    if (t.patch >= 0)
+      for (int k = 0; k < 3; ++k, ++count) sum += norm(mesh.points[t.v[k]] - mesh.points[t.v[(k + 1) % 3]]);
+  return count ? sum / static_cast<double>(count) : 1;
+}
+
+}  // namespace
+
+SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets, const MoveLimits& keep,
+                             int threads) {
+  SmoothingResult result;
+  const std::size_t n = mesh.points.size();
+  const std::vector<Vec3> before = mesh.points;
+  std::vector<Vec3> now = targets;
+  std::vector<float> share(n, 1);
+  const double cell = 1.5 * mean_edge(mesh);
+  TriangleGrid grid;
+  grid.build(mesh, now, cell);
+  std::vector<std::int32_t> suspects;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t)
+    if (mesh.alive(t)) suspects.push_back(t);
+  std::vector<std::int32_t> changed;
+  for (;;) {
+    ++result.rounds;
+    const std::vector<std::int32_t> bad =
+        find_offenders(mesh, grid, before, now, suspects, keep, threads);
+    changed.clear();
+    for (std::int32_t t : bad)
+      for (std::int32_t v : mesh.triangles[t].v)
+        if (share[v] > 0) changed.push_back(v);
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    if (changed.empty()) break;
+    suspects.clear();
+    for (std::int32_t v : changed) {
+      share[v] = share[v] > 0.2f ? share[v] / 2 : 0;
+      now[v] = share[v] > 0 ? before[v] + static_cast<double>(share[v]) * (targets[v] - before[v]) : before[v];
+      suspects.insert(suspects.end(), mesh.star[v].begin(), mesh.star[v].end());
+    }
+    std::sort(suspects.begin(), suspects.end());
+    suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+    for (std::int32_t t : suspects) {
+      grid.remove(t);
+      const auto& v = mesh.triangles[t].v;
+      grid.insert(t, {now[v[0]], now[v[1]], now[v[2]]});
+    }
+  }
+  for (std::size_t v = 0; v < n; ++v) {
+    result.moved += share[v] > 0 && norm(now[v] - before[v]) > 0;
+    result.held_back += share[v] < 1;
+  }
+  mesh.points = std::move(now);
+  return result;
+}
+
+SmoothingResult smooth(ComplexMesh& mesh, const SmoothingOptions& options) {
+  return move_guarded(mesh, smoothed_places(mesh, options), options.keep, options.threads);
+}
+
+std::map<Label, double> label_volumes(const ComplexMesh& mesh) {
+  std::map<Label, double> out;
+  for (const MeshTriangle& t : mesh.triangles) {
+    if (t.patch < 0) continue;
+    const auto [below, above] = mesh.labels_of(t.patch);
+    const double v = dot(mesh.points[t.v[0]], mesh.area_vector(t.v)) / 3;
+    out[below] += v;
+    out[above] -= v;
+  }
+  out.erase(0);
+  return out;
+}
+
+SmoothingResult restore_volumes(ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
+                                const MoveLimits& keep, int threads) {
+  // Label l grows by offset[l] along its normals; between a and b the sheet moves by the difference.
+  std::map<Label, double> lack = volumes, offset, area;
+  for (const auto& [label, v] : label_volumes(mesh)) lack[label] -= v;
+  std::map<std::pair<Label, Label>, double> shared;
+  for (const MeshTriangle& t : mesh.triangles) {
+    if (t.patch < 0 || mesh.is_cap(t.patch)) continue;
+    const double a = norm(mesh.area_vector(t.v));
+    shared[mesh.labels_of(t.patch)] += a;
+    for (Label l : {mesh.labels_of(t.patch).first, mesh.labels_of(t.patch).second}) area[l] += a;
+  }
+  for (int pass = 0; pass < 60; ++pass)
+    for (const auto& [label, missing] : lack) {
+      if (label == 0 || !(area[label] > 0)) continue;
+      double sum = missing;
+      for (const auto& [pair, a] : shared) {
+        if (pair.first == label && pair.second != 0) sum += a * offset[pair.second];
+        if (pair.second == label && pair.first != 0) sum += a * offset[pair.first];
+      }
+      offset[label] = std::clamp(sum / area[label], -limit_mm, limit_mm);
+    }
+  offset[0] = 0;
+  std::vector<Vec3> targets = mesh.points;
+  for (std::size_t v = 0; v < targets.size(); ++v) {
+    if (mesh.star[v].empty() || mesh.is_fixed(static_cast<std::int32_t>(v))) continue;
+    Vec3 move;
+    double sum = 0;
+    for (std::int32_t t : mesh.star[v]) {
+      const std::int32_t patch = mesh.triangles[t].patch;
+      if (mesh.is_cap(patch)) continue;
+      const Vec3 a = mesh.area_vector(mesh.triangles[t].v);
+      const auto [below, above] = mesh.labels_of(patch);
+      move = move + (offset[below] - offset[above]) * a;
+      sum += norm(a);
+    }
+    if (!(sum > 0)) continue;
+    if (mesh.flat[v]) move.z = 0;
+    targets[v] = targets[v] + (1 / sum) * move;
+  }
+  return move_guarded(mesh, targets, keep, threads);
+}
+
+}  // namespace stackmesh
