@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <set>
 
 #include "base/error.h"
 #include "commands.h"
@@ -14,6 +15,17 @@ struct ContoursArguments {
   TerminalArguments terminal;
   std::string output;
 };
+
+/// A .cnt file holds one label: several go to NAME_<label>.cnt.
+std::string written_name(const std::string& output, const Stack& stack) {
+  std::set<Label> labels;
+  for (const Section& s : stack.sections)
+    for (const SectionEdge& e : s.edges) labels.insert({e.left, e.right});
+  labels.erase(0);
+  const std::size_t dot = output.rfind('.');
+  const bool one_file = labels.size() < 2 || output.substr(dot + 1).find_first_of("cC") != 0;
+  return one_file ? output : output.substr(0, dot) + "_<label>" + output.substr(dot);
+}
 
 void run(const ContoursArguments& a) {
   if (!is_section_format(a.output)) fail_usage("unknown ending of an output", a.output, "choose .json, .svg or .cnt");
@@ -32,7 +44,7 @@ void run(const ContoursArguments& a) {
     vertices += s.points.size();
     edges += s.edges.size();
   }
-  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges, a.output.c_str());
+  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges, written_name(a.output, stack).c_str());
 }
 
 }  // namespace

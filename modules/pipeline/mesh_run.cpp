@@ -138,6 +138,8 @@ class MeshRun {
     } else {
       report_.closure = "failed";
       refusal_ = "the volume mesher did not fill the surface (" + result.message + ")";
+      if (result.status == FillResult::Status::timed_out) mend_ = "give it longer with --timeout, or mesh fewer labels at once";
+      if (result.status == FillResult::Status::crashed) mend_ = "free some memory, or mesh fewer labels at once";
       offending_ = std::move(result.offending_triangles);
     }
   }
@@ -224,7 +226,7 @@ class MeshRun {
     }
     if (!refusal_.empty()) {
       report_.closure = o_.target == Target::volume ? "failed" : "skipped";
-      mend_ = "try --simplify 0, and report the input";
+      if (mend_.empty()) mend_ = "try --simplify 0, and report the input";
       write_offending();
     } else if (o_.strict && !lost_detail_.empty()) {
       refusal_ = lost_detail_;

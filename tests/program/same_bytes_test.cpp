@@ -41,8 +41,7 @@ TEST_P(SameBytes, OneThreadTwoThreadsAndAgain) {
   EXPECT_GE(compared, 10 + 1 + 2 * 5 + 2 + 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Testdata, SameBytes,
-                         ::testing::Values("heart4.nii.gz", "noise.nii.gz", "oblique.nii.gz"),
+INSTANTIATE_TEST_SUITE_P(Testdata, SameBytes, ::testing::Values("heart4.nii.gz", "noise.nii.gz"),
                          [](const auto& p) {
                            return std::string(p.param).substr(0, std::string(p.param).find('.'));
                          });

@@ -2,6 +2,10 @@
 """Reads mesh files back with VTK and meshio and compares them with what was meant.
 
 usage: readback.py FOLDER
+       readback.py --report R.json FILE...
+
+With a report of the program, the FILEs (one .vtu and one .vtp among them) are those of that run: counts, labels and
+volumes must be the report's, coordinates those of the .vtu, and triangles of a pair as many as in the .vtp.
 
 FOLDER/expected.json holds
   files             names of the files to check, all of one mesh
@@ -268,7 +272,8 @@ def same_corners(mesh, reference):
     """Same triangles, same winding, same order, for formats without labels."""
     a = np.asarray(mesh.points, float)[mesh.triangles]
     b = np.asarray(reference.points, float)[reference.triangles]
-    need(a.shape == b.shape and np.abs(a - b).max() <= (0 if mesh.precision == EXACT else 2e-5), "triangles differ")
+    need(a.shape == b.shape and np.abs(a - b).max() <= (0 if mesh.precision == EXACT else 1e-7 * np.abs(b).max()),
+         "triangles differ")
 
 
 def check_label_file(path, expected):
@@ -304,15 +309,39 @@ def readings(path, expected):
     }[ending]
 
 
-def main(folder):
+def from_folder(folder):
     with open(os.path.join(folder, "expected.json")) as file:
         expected = json.load(file)
-    all_points = np.fromfile(os.path.join(folder, "points.bin")).reshape(-1, 3)
+    expected["files"] = [os.path.join(folder, name) for name in expected["files"]]
+    return expected, np.fromfile(os.path.join(folder, "points.bin")).reshape(-1, 3)
+
+
+def from_report(path, files):
+    with open(path) as file:
+        report = json.load(file)
+    names = {0: "background"}
+    labels = []
+    for row in report["labels"]:
+        name = names[row["label"]] = row["name"] or f"label_{row['label']}"
+        labels.append({"label": row["label"], "name": name, "set": re.sub(r"\W", "_", name), "tets": row["tets"],
+                       "volume": row["tet_volume_mm3"]})
+    surface = vtk_poly(vtk.vtkXMLPolyDataReader(), next(f for f in files if f.endswith(".vtp")), labelled=True)
+    pairs, counts = np.unique(surface.pairs, axis=0, return_counts=True)
+    grid = vtk_grid(vtk.vtkXMLUnstructuredGridReader(), next(f for f in files if f.endswith(".vtu")))
+    space = report["input"]["space"]
+    return {"files": files, "space": "" if space == "none" else space.upper(), "points": report["volume"]["nodes"],
+            "surface_points": report["surface"]["vertices"], "tets": report["volume"]["tets"],
+            "triangles": report["surface"]["triangles"], "labels": labels,
+            "pairs": [{"below": int(b), "above": int(a), "name": f"{names[b]}|{names[a]}", "triangles": int(n)}
+                      for (b, a), n in zip(pairs, counts)]}, np.asarray(grid.points)
+
+
+def main(expected, all_points):
     surface_files = [f for f in expected["files"] if f.endswith(".vtp") and not re.search(r"_\d+\.", f)]
-    reference = vtk_poly(vtk.vtkXMLPolyDataReader(), os.path.join(folder, surface_files[0]), labelled=True)
+    reference = vtk_poly(vtk.vtkXMLPolyDataReader(), surface_files[0], labelled=True)
     bad = 0
-    for name in expected["files"]:
-        path = os.path.join(folder, name)
+    for path in expected["files"]:
+        name = os.path.basename(path)
         if re.search(r"_\d+\.\w+$", name):
             tasks = [("closed", lambda: check_label_file(path, expected))]
         else:
@@ -333,6 +362,8 @@ def main(folder):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) > 3 and sys.argv[1] == "--report":
+        sys.exit(main(*from_report(sys.argv[2], sys.argv[3:])))
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*from_folder(sys.argv[1])))
