@@ -1,0 +1,239 @@
+#include "enhance/local_operations.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stackmesh {
+namespace {
+
+constexpr double kFold = 0.35;     // cosine: a triangle's normal against that of its old fan
+constexpr double kFlipBend = 0.82; // cosine: two triangles whose edge may be flipped
+const double kSqrt2 = std::sqrt(2.0);
+
+Vec3 unit(const Vec3& a) {
+  const double l = norm(a);
+  return l > 0 ? (1 / l) * a : Vec3{};
+}
+
+}  // namespace
+
+void LocalOperations::fan_normals(std::int32_t v) {
+  const auto& star = mesh_.star[v];
+  mesh_.fans(v, fan_);
+  normals_.assign(star.size(), Vec3{});
+  std::vector<Vec3> sum(star.size());
+  for (std::size_t i = 0; i < star.size(); ++i) sum[fan_[i]] = sum[fan_[i]] + mesh_.area_vector(mesh_.triangles[star[i]].v);
+  for (std::size_t i = 0; i < star.size(); ++i) normals_[i] = unit(sum[fan_[i]]);
+}
+
+bool LocalOperations::split(std::int32_t a, std::int32_t b) {
+  Vec3 p = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+  if (mesh_.flat[a] && mesh_.flat[b] && mesh_.points[a].z == mesh_.points[b].z) p.z = mesh_.points[a].z;
+  mesh_.edge_triangles(a, b, removed_);
+  const auto n = static_cast<std::int32_t>(mesh_.points.size());
+  added_.clear();
+  for (std::int32_t t : removed_) {
+    auto v = mesh_.triangles[t].v, w = v;
+    std::replace(v.begin(), v.end(), b, n);
+    std::replace(w.begin(), w.end(), a, n);
+    added_.push_back(v);
+    added_.push_back(w);
+  }
+  Change c;
+  c.removed = &removed_;
+  c.added = &added_;
+  c.moved = n;
+  c.to = p;
+  c.clearance_mm = 1e-6 * length(a, b);
+  if (!guard.allows(c)) return false;
+  const auto first = static_cast<std::int32_t>(mesh_.triangles.size());
+  mesh_.split(a, b, p);
+  size_.push_back(asked(a, b));
+  touched_ = removed_;
+  for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t) touched_.push_back(t);
+  guard.update(touched_);
+  ++counts.splits;
+  return true;
+}
+
+bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floor_rad) {
+  if (mesh_.pinned[gone] || !mesh_.can_collapse(gone, kept)) return false;
+  const Vec3 target = mesh_.points[kept], old = mesh_.points[gone];
+  const double asked_length = asked(gone, kept), reach = o_.deviation_rel * asked_length;
+  if (!mesh_.curve[gone].empty()) {
+    for (std::int32_t c : mesh_.curve[gone])
+      if (c != kept) {
+        const Vec3 d = old - nearest_on_segment(old, target, mesh_.points[c]);
+        if (dot(d, d) > 2.5 * reach * reach) return false;
+      }
+  }
+  const auto& star = mesh_.star[gone];
+  double worst = 10, worst_old = 10;
+  for (std::int32_t t : star) worst_old = std::min(worst_old, angle(mesh_.triangles[t].v));
+  const double floor = std::min(floor_rad, worst_old);
+  double longest_old = 0;
+  added_.clear();
+  for (std::int32_t t : star) {
+    auto v = mesh_.triangles[t].v;
+    for (std::int32_t w : v)
+      if (w != gone) longest_old = std::max(longest_old, length(gone, w));
+    if (v[0] == kept || v[1] == kept || v[2] == kept) continue;
+    std::replace(v.begin(), v.end(), gone, kept);
+    worst = std::min(worst, angle(v));
+    if (worst < floor) return false;
+    added_.push_back(v);
+  }
+  for (const auto& v : added_)
+    for (std::int32_t w : v)
+      if (w != kept && length(kept, w) > std::max(kSqrt2 * asked(kept, w), longest_old)) return false;
+  fan_normals(gone);
+  std::size_t next = 0;
+  double off = 1e300;
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    const auto& v = mesh_.triangles[star[i]].v;
+    if (v[0] == kept || v[1] == kept || v[2] == kept) continue;
+    const auto& w = added_[next++];
+    const Vec3 n = unit(mesh_.area_vector(w));
+    const double along = dot(n, normals_[i]);
+    if (along < kFold && along < dot(unit(mesh_.area_vector(v)), normals_[i]) + 1e-9) return false;
+    const Vec3 d = old - nearest_on_triangle(old, mesh_.points[w[0]], mesh_.points[w[1]], mesh_.points[w[2]]);
+    off = std::min(off, dot(d, d));
+  }
+  if (mesh_.curve[gone].empty() && off > reach * reach) return false;
+  removed_ = star;
+  Change c;
+  c.removed = &removed_;
+  c.added = &added_;
+  c.clearance_mm = o_.clearance_rel * asked_length;
+  if (!guard.allows(c)) return false;
+  mesh_.collapse(gone, kept);
+  guard.update(removed_);
+  ++counts.collapses;
+  return true;
+}
+
+int LocalOperations::ideal_valence_error(std::int32_t v, int change) const {
+  const int count = static_cast<int>(mesh_.star[v].size()) + change;
+  if (!mesh_.curve[v].empty()) return 0;
+  return (count - 6) * (count - 6);
+}
+
+bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence) {
+  std::array<std::int32_t, 2> t, apex;
+  if (!mesh_.can_flip(a, b, t, apex)) return false;
+  const auto [c, d] = apex;
+  const std::array<std::int32_t, 3> one = {a, d, c}, two = {d, b, c};
+  const double before = std::min(angle(mesh_.triangles[t[0]].v), angle(mesh_.triangles[t[1]].v));
+  const double after = std::min(angle(one), angle(two));
+  bool better = after > before + gain_rad;
+  if (!better && valence && after > std::max(0.45, 0.8 * before)) {
+    const int was = ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) + ideal_valence_error(d, 0);
+    const int is = ideal_valence_error(a, -1) + ideal_valence_error(b, -1) + ideal_valence_error(c, 1) + ideal_valence_error(d, 1);
+    better = is < was;
+  }
+  if (!better) return false;
+  const Vec3 n0 = mesh_.area_vector(mesh_.triangles[t[0]].v), n1 = mesh_.area_vector(mesh_.triangles[t[1]].v);
+  const Vec3 sum = unit(n0 + n1), m0 = unit(mesh_.area_vector(one)), m1 = unit(mesh_.area_vector(two));
+  if (dot(m0, sum) < kFlipBend || dot(m1, sum) < kFlipBend) return false;
+  // Where the four corners are far from a plane, the flip changes the surface.
+  const double out = std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
+  if (out > o_.deviation_rel * asked(a, b)) return false;
+  removed_ = {t[0], t[1]};
+  added_ = {one, two};
+  Change change;
+  change.removed = &removed_;
+  change.added = &added_;
+  change.clearance_mm = o_.clearance_rel * asked(a, b);
+  if (!guard.allows(change)) return false;
+  mesh_.flip(a, b, t, apex);
+  guard.update(removed_);
+  ++counts.flips;
+  return true;
+}
+
+Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
+  const Vec3& here = mesh_.points[v];
+  if (mesh_.is_fixed(v)) return here;
+  const double reach = size_[v] + norm(p - here);
+  Vec3 to = here;
+  if (!mesh_.curve[v].empty()) {
+    const auto foot = reference_.nearest_on_curve(p, Reference::curve_key(mesh_, v, mesh_.curve[v][0]), reach);
+    if (foot) to = *foot;
+  } else if (mesh_.flat[v]) {
+    to = p;
+  } else {
+    const auto foot = reference_.nearest(p, mesh_.triangles[mesh_.star[v][0]].patch, reach);
+    if (foot) to = foot->point;
+  }
+  if (mesh_.flat[v]) to.z = here.z;
+  return to;
+}
+
+double LocalOperations::smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const {
+  double worst = 10;
+  const auto& star = mesh_.star[v];
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    const auto& t = mesh_.triangles[star[i]].v;
+    Vec3 p[3];
+    for (int k = 0; k < 3; ++k) p[k] = t[k] == v ? at : mesh_.points[t[k]];
+    if (dot(unit(cross(p[1] - p[0], p[2] - p[0])), fan_normals[i]) < kFold) return -1;
+    worst = std::min(worst, smallest_angle(p[0], p[1], p[2]));
+  }
+  return worst;
+}
+
+bool LocalOperations::relocate(std::int32_t v) {
+  if (mesh_.is_fixed(v)) return false;
+  fan_normals(v);
+  const Vec3 here = mesh_.points[v];
+  const double now = smallest_round(v, here, normals_);
+  std::vector<std::pair<double, Vec3>> places;
+  const auto offer = [&](const Vec3& p) {
+    const Vec3 q = drawn_to_reference(v, p);
+    const double a = smallest_round(v, q, normals_);
+    if (a > now + 0.005) places.push_back({a, q});
+  };
+  if (!mesh_.curve[v].empty()) {
+    for (std::int32_t c : mesh_.curve[v])
+      for (double s : {0.1, 0.2, 0.35, 0.5}) offer(here + s * (mesh_.points[c] - here));
+  } else {
+    const Vec3 n = normals_[0];
+    const Vec3 u = unit(cross(n, std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})), w = cross(n, u);
+    double l = 1e300;
+    Vec3 mean;
+    for (std::int32_t t : mesh_.star[v])
+      for (std::int32_t x : mesh_.triangles[t].v)
+        if (x != v) {
+          l = std::min(l, length(v, x));
+          mean = mean + mesh_.points[x];
+        }
+    l = std::max(l, 0.25 * size_[v]);
+    offer((0.5 / static_cast<double>(mesh_.star[v].size())) * mean);
+    for (double r : {0.5, 0.25, 0.1})
+      for (int k = 0; k < 8; ++k) {
+        const double phi = k * M_PI / 4;
+        offer(here + (r * l * std::cos(phi)) * u + (r * l * std::sin(phi)) * w);
+      }
+  }
+  std::stable_sort(places.begin(), places.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  if (places.size() > 4) places.resize(4);
+  removed_ = mesh_.star[v];
+  added_.clear();
+  for (std::int32_t t : removed_) added_.push_back(mesh_.triangles[t].v);
+  Change c;
+  c.removed = &removed_;
+  c.added = &added_;
+  c.moved = v;
+  c.clearance_mm = o_.clearance_rel * size_[v];
+  for (const auto& [a, q] : places) {
+    c.to = q;
+    if (!guard.allows(c)) continue;
+    mesh_.points[v] = q;
+    guard.update(removed_);
+    ++counts.relocations;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "enhance/complex_mesh.h"
+#include "enhance/guard.h"
+#include "enhance/reference.h"
+#include "enhance/remesh.h"
+
+namespace stackmesh {
+
+/// The single operations of the remesher: each judges shape, asks the guard, and commits or leaves all as it was.
+class LocalOperations {
+ public:
+  LocalOperations(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options)
+      : guard(mesh, options.sheet_angle_deg), mesh_(mesh), size_(size), reference_(reference), o_(options) {}
+
+  double asked(std::int32_t a, std::int32_t b) const { return 0.5 * (size_[a] + size_[b]); }
+  double length(std::int32_t a, std::int32_t b) const { return norm(mesh_.points[a] - mesh_.points[b]); }
+  double angle(const std::array<std::int32_t, 3>& v) const {
+    return smallest_angle(mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]]);
+  }
+
+  /// At its middle.
+  bool split(std::int32_t a, std::int32_t b);
+  /// `gone` into `kept`; no triangle gets an angle below `floor_rad` unless one of those that go was worse.
+  bool collapse(std::int32_t gone, std::int32_t kept, double floor_rad);
+  /// Flips where it makes the smallest angle larger by `gain_rad`; with `valence`, also where neighbour counts gain.
+  bool flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence);
+  /// Moves one vertex to the place near it that makes the smallest angle round it largest.
+  bool relocate(std::int32_t v);
+  /// Where a vertex belongs when it is drawn to p: on its reference sheet or curve, on its cap; itself if it may not move.
+  Vec3 drawn_to_reference(std::int32_t v, const Vec3& p) const;
+
+  Guard guard;
+  RemeshCounts counts;
+
+ private:
+  double smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const;
+  void fan_normals(std::int32_t v);
+  int ideal_valence_error(std::int32_t v, int change) const;
+
+  ComplexMesh& mesh_;
+  std::vector<double>& size_;
+  const Reference& reference_;
+  const RemeshOptions& o_;
+  std::vector<std::int32_t> removed_, touched_, fan_;
+  std::vector<std::array<std::int32_t, 3>> added_;
+  std::vector<Vec3> normals_;  ///< unit normal of each triangle's fan, in the order of the star
+};
+
+}  // namespace stackmesh

@@ -1,0 +1,250 @@
+#include "enhance/remesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "enhance/local_operations.h"
+#include "enhance/smoothing.h"
+
+namespace stackmesh {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+const double kSqrt2 = std::sqrt(2.0);
+
+class Remesher {
+ public:
+  Remesher(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options)
+      : mesh_(mesh), size_(size), reference_(reference), o_(options), ops_(mesh, size, reference, options) {}
+
+  RemeshCounts run(Progress& progress) {
+    for (int round = 0; round < o_.rounds; ++round) {
+      regrid();
+      split_long();
+      collapse_short(round == 0 ? 8 : 3, (round == 0 ? 8 : 15) * kDegree);
+      flip_all(2 * kDegree, round + 1 < o_.rounds, 2);
+      relocate_all();
+      progress.advance(0.3 + 0.5 * (round + 1) / o_.rounds);
+    }
+    for (int pass = 0; pass < 2; ++pass) match_reference();
+    regrid();
+    flip_all(1 * kDegree, false, 3);
+    for (int sweep = 0; sweep < o_.finish_sweeps; ++sweep)
+      if (improve_worst() == 0) break;
+    RemeshCounts c = ops_.counts;
+    c.refused_contact = ops_.guard.refused_contact;
+    c.refused_angle = ops_.guard.refused_angle;
+    c.refused_clearance = ops_.guard.refused_clearance;
+    return c;
+  }
+
+ private:
+  using Edge = std::array<std::int32_t, 2>;
+
+  void regrid() {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const Edge& e : mesh_.edges()) {
+      sum += ops_.length(e[0], e[1]);
+      ++count;
+    }
+    if (count) ops_.guard.rebuild(1.3 * sum / static_cast<double>(count));
+  }
+
+  double ratio(const Edge& e) const { return ops_.length(e[0], e[1]) / ops_.asked(e[0], e[1]); }
+
+  /// Edges with their normalised length, sorted by it, those that pass only.
+  template <class Pass>
+  std::vector<std::pair<double, Edge>> ranked(Pass pass) const {
+    std::vector<std::pair<double, Edge>> out;
+    for (const Edge& e : mesh_.edges()) {
+      const double r = ratio(e);
+      if (pass(r)) out.push_back({r, e});
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  void split_long() {
+    for (int pass = 0; pass < 12; ++pass) {
+      auto list = ranked([](double r) { return r > kSqrt2; });
+      std::size_t done = 0;
+      for (auto it = list.rbegin(); it != list.rend(); ++it)
+        if (mesh_.has_edge(it->second[0], it->second[1])) done += ops_.split(it->second[0], it->second[1]);
+      if (done == 0) break;
+    }
+  }
+
+  void collapse_short(int passes, double floor_rad) {
+    for (int pass = 0; pass < passes; ++pass) {
+      std::size_t done = 0;
+      for (const auto& [r, e] : ranked([](double x) { return x < 1 / kSqrt2; })) {
+        const auto [a, b] = e;
+        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= 1 / kSqrt2) continue;
+        // The one with fewer triangles goes first: it changes less.
+        const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();
+        done += ops_.collapse(a_first ? a : b, a_first ? b : a, floor_rad) || ops_.collapse(a_first ? b : a, a_first ? a : b, floor_rad);
+      }
+      if (done * 200 < mesh_.points.size() / 100) break;
+    }
+  }
+
+  void flip_all(double gain, bool valence, int passes) {
+    for (int pass = 0; pass < passes; ++pass) {
+      std::size_t done = 0;
+      for (const Edge& e : mesh_.edges())
+        if (mesh_.has_edge(e[0], e[1])) done += ops_.flip(e[0], e[1], gain, valence && pass == 0);
+      if (done == 0) break;
+    }
+  }
+
+  template <class Target>
+  void move_all(const MoveLimits& keep, Target target) {
+    std::vector<Vec3> to = mesh_.points;
+    constexpr std::size_t kChunk = 512;
+    parallel_for((to.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
+      for (std::size_t v = chunk * kChunk; v < std::min(to.size(), (chunk + 1) * kChunk); ++v)
+        if (!mesh_.star[v].empty() && !mesh_.is_fixed(static_cast<std::int32_t>(v))) to[v] = target(static_cast<std::int32_t>(v));
+    });
+    ops_.counts.relocations += move_guarded(mesh_, to, keep, o_.threads).moved;
+  }
+
+  double clearance() const {
+    double least = 1e300;
+    for (std::size_t v = 0; v < size_.size(); ++v)
+      if (!mesh_.star[v].empty()) least = std::min(least, size_[v]);
+    return least < 1e300 ? o_.clearance_rel * least : 0;
+  }
+
+  /// To the centroid of the star (curves: between the neighbours), on the reference.
+  void relocate_all() {
+    MoveLimits keep;
+    keep.clearance_mm = clearance();
+    keep.sheet_angle_deg = o_.sheet_angle_deg;
+    keep.corner_angle_deg = 25;
+    keep.turn_deg = 60;
+    for (int pass = 0; pass < 2; ++pass)
+      move_all(keep, [&](std::int32_t v) {
+        const Vec3 here = mesh_.points[v];
+        Vec3 sum;
+        double weight = 0;
+        if (!mesh_.curve[v].empty()) {
+          for (std::int32_t c : mesh_.curve[v]) {
+            const double w = norm(mesh_.points[c] - here) / (size_[c] + size_[v]);
+            sum = sum + w * mesh_.points[c];
+            weight += w;
+          }
+        } else {
+          for (std::int32_t t : mesh_.star[v]) {
+            const auto& c = mesh_.triangles[t].v;
+            const double s = size_[c[0]] + size_[c[1]] + size_[c[2]];
+            const double w = norm(mesh_.area_vector(c)) / (s * s);
+            sum = sum + (w / 3) * (mesh_.points[c[0]] + mesh_.points[c[1]] + mesh_.points[c[2]]);
+            weight += w;
+          }
+        }
+        if (!(weight > 0)) return here;
+        const Vec3 p = (1 / weight) * sum;
+        return ops_.drawn_to_reference(v, mesh_.curve[v].empty() ? p : here + 0.5 * (p - here));
+      });
+  }
+
+  /// Moves along the normal so that the mean distance of the triangles round a vertex to the reference is zero.
+  void match_reference() {
+    std::vector<double> off(mesh_.triangles.size(), 0);
+    constexpr std::size_t kChunk = 512;
+    parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
+      for (std::size_t t = chunk * kChunk; t < std::min(off.size(), (chunk + 1) * kChunk); ++t) {
+        const MeshTriangle& m = mesh_.triangles[t];
+        if (m.patch < 0 || mesh_.is_cap(m.patch)) continue;
+        const Vec3 a = mesh_.area_vector(m.v);
+        const double l = norm(a), reach = size_[m.v[0]];
+        if (!(l > 0)) continue;
+        static constexpr double kAt[4][3] = {{1 / 3., 1 / 3., 1 / 3.}, {.6, .2, .2}, {.2, .6, .2}, {.2, .2, .6}};
+        double sum = 0;
+        int found = 0;
+        for (const auto& w : kAt) {
+          const Vec3 p = w[0] * mesh_.points[m.v[0]] + w[1] * mesh_.points[m.v[1]] + w[2] * mesh_.points[m.v[2]];
+          if (const auto foot = reference_.nearest(p, m.patch, reach)) {
+            sum += dot(foot->point - p, (1 / l) * a);
+            ++found;
+          }
+        }
+        if (found) off[t] = sum / found;
+      }
+    });
+    MoveLimits keep;
+    keep.clearance_mm = clearance();
+    keep.sheet_angle_deg = o_.sheet_angle_deg;
+    keep.corner_angle_deg = 25;
+    keep.turn_deg = 60;
+    move_all(keep, [&](std::int32_t v) {
+      Vec3 sum;
+      double weight = 0;
+      for (std::int32_t t : mesh_.star[v]) {
+        const Vec3 a = mesh_.area_vector(mesh_.triangles[t].v);
+        sum = sum + off[t] * a;
+        weight += norm(a);
+      }
+      Vec3 move = weight > 0 ? (0.8 / weight) * sum : Vec3{};
+      if (mesh_.flat[v]) move.z = 0;
+      const double l = norm(move), most = 0.2 * size_[v];
+      return mesh_.points[v] + (l > most ? most / l : 1.0) * move;
+    });
+  }
+
+  std::size_t improve_worst() {
+    std::vector<std::pair<double, std::int32_t>> worst;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
+      if (mesh_.alive(t)) {
+        const double a = ops_.angle(mesh_.triangles[t].v);
+        if (a < o_.good_angle_deg * kDegree) worst.push_back({a, t});
+      }
+    std::sort(worst.begin(), worst.end());
+    std::size_t done = 0;
+    for (const auto& [before, t] : worst) {
+      if (!mesh_.alive(t)) continue;
+      const double a = ops_.angle(mesh_.triangles[t].v);
+      if (a < o_.good_angle_deg * kDegree) done += improve(t, a);
+    }
+    return done;
+  }
+
+  bool improve(std::int32_t t, double angle) {
+    auto v = mesh_.triangles[t].v;
+    int longest = 0, shortest = 0;
+    const auto side = [&](int k) { return ops_.length(v[k], v[(k + 1) % 3]); };
+    for (int k = 1; k < 3; ++k) {
+      if (side(k) > side(longest)) longest = k;
+      if (side(k) < side(shortest)) shortest = k;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int e = (longest + k) % 3;
+      if (ops_.flip(v[e], v[(e + 1) % 3], 0.5 * kDegree, false)) return true;
+    }
+    const std::int32_t a = v[shortest], b = v[(shortest + 1) % 3];
+    if (side(shortest) < 0.8 * ops_.asked(a, b)) {
+      const double floor = std::min(angle + 2 * kDegree, 28 * kDegree);
+      if (ops_.collapse(a, b, floor) || ops_.collapse(b, a, floor)) return true;
+    }
+    bool moved = false;
+    for (std::int32_t w : v) moved = ops_.relocate(w) || moved;
+    return moved;
+  }
+
+  ComplexMesh& mesh_;
+  std::vector<double>& size_;
+  const Reference& reference_;
+  const RemeshOptions& o_;
+  LocalOperations ops_;
+};
+
+}  // namespace
+
+RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options,
+                    Progress& progress) {
+  return Remesher(mesh, size, reference, options).run(progress);
+}
+
+}  // namespace stackmesh
