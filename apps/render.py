@@ -270,7 +270,7 @@ def rgb(hexadecimal):
 def palette(labels):
     """A colour per label, by rank among all labels drawn; background is grey."""
     colors = {0: (0.75, 0.75, 0.75)}
-    for rank, label in enumerate(sorted(set(labels) - {0})):
+    for rank, label in enumerate(sorted(set(labels) - {0, -1})):
         if rank < len(COLORS):
             colors[label] = rgb(COLORS[rank])
         else:

@@ -21,7 +21,7 @@ struct ContourSection {
 /// The contours of one label, as one file holds them. Orientation and order of the polygons are free.
 struct ContourFile {
   std::string path;
-  Label label = 0;  ///< 0: the caller numbers it
+  Label label = 1;  ///< 0: the caller numbers it
   std::string name;
   std::vector<ContourSection> sections;  ///< ascending z
   std::vector<std::string> warnings;

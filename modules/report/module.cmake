@@ -1,4 +1,4 @@
-# The run's figures as a report: JSON with the fields of docs/report.md.
+# The run's figures as a report: JSON with the fields of modules/report/README.md.
 stackmesh_module(report
   SOURCES run_report.cpp
   HEADERS run_report.h

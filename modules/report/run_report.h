@@ -35,7 +35,7 @@ struct LabelReport {
   std::string cap_low, cap_high;  ///< "flat" or "round"
 };
 
-/// Everything a run reports (docs/report.md lists the fields of the JSON form).
+/// Everything a run reports (modules/report/README.md lists the fields of the JSON form).
 struct RunReport {
   std::string version, command;
   std::vector<std::pair<std::string, std::string>> options;  ///< as given or defaulted
