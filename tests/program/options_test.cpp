@@ -1,6 +1,4 @@
 // What the options change, seen from outside.
-#include <stdlib.h>
-
 #include <array>
 #include <cmath>
 #include <fstream>
