@@ -54,17 +54,16 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(number_in(1, 100, "a number from 1 to 100"))->capture_default_str();
   command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none")->check(CLI::Range(0, 10000))->capture_default_str();
   command.add_flag(target == Target::volume ? "--no-enhance" : "--raw,--no-enhance", e.off, "the stitched surface as it is");
-  if (target == Target::surface) {
-    a.terminal.add_to(command);
-    return;
-  }
-  command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str();
-  command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3")->check(positive);
-  command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100"));
-  command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40"));
-  command.add_option("--order", a.order, "1: linear tetrahedra")->check(CLI::Range(1, 2))->capture_default_str();
-  command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2");
-  command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str();
+  const std::vector<CLI::Option*> of_volumes = {
+      command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str(),
+      command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3")->check(positive),
+      command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
+      command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
+      command.add_option("--order", a.order, "1: linear tetrahedra")->check(CLI::Range(1, 2))->capture_default_str(),
+      command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
+      command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
+  if (target == Target::surface)
+    for (CLI::Option* option : of_volumes) option->group("");  // accepted without effect, so that both commands take the same line
   a.terminal.add_to(command);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 #include "base/error.h"
 #include "stitch/planar.h"
@@ -180,36 +179,37 @@ class SlabStitcher {
       }
     }
     if (below.empty()) return;
-    for (auto& b : below) b = {find(b.first), find(b.second)};
-    below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }), below.end());
-    std::sort(below.begin(), below.end());
-    below.erase(std::unique(below.begin(), below.end()), below.end());
-    layer_by_longest_path(below);
+    const auto to_roots = [&] {
+      for (auto& b : below) b = {find(b.first), find(b.second)};
+      below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }), below.end());
+      std::sort(below.begin(), below.end());
+      below.erase(std::unique(below.begin(), below.end()), below.end());
+    };
+    to_roots();
+    // Wishes that contradict each other in a cycle: those sheets share their rims, where nothing grows together.
+    for (const auto& b : in_cycles(below)) root[std::max(find(b.first), find(b.second))] = std::min(find(b.first), find(b.second));
+    to_roots();
+    for (bool rising = true; rising;) {  // longest paths
+      rising = false;
+      for (const auto& b : below)
+        if (sheets_[b.second].layer <= sheets_[b.first].layer) {
+          sheets_[b.second].layer = sheets_[b.first].layer + 1;
+          rising = true;
+        }
+    }
     for (std::size_t s = 0; s < sheets_.size(); ++s) sheets_[s].layer = sheets_[find(static_cast<std::int32_t>(s))].layer;
   }
 
-  /// Layers so that each pair ascends; in a cycle any order is valid, so the lowest number goes first.
-  void layer_by_longest_path(const std::vector<std::pair<std::int32_t, std::int32_t>>& below) {
-    std::vector<int> waiting(sheets_.size(), 0);
-    std::set<std::int32_t> open, ready;
-    for (const auto& b : below) {
-      ++waiting[b.second];
-      open.insert(b.first);
-      open.insert(b.second);
+  /// The pairs left when all that nothing passes beneath, and all that passes beneath nothing, is taken away.
+  std::vector<std::pair<std::int32_t, std::int32_t>> in_cycles(std::vector<std::pair<std::int32_t, std::int32_t>> pairs) const {
+    for (std::size_t before = pairs.size() + 1; pairs.size() < before;) {
+      before = pairs.size();
+      std::vector<char> has_lower(sheets_.size(), 0), has_higher(sheets_.size(), 0);
+      for (const auto& p : pairs) has_higher[p.first] = has_lower[p.second] = 1;
+      pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [&](const auto& p) { return !has_lower[p.first] || !has_higher[p.second]; }),
+                  pairs.end());
     }
-    for (std::int32_t s : open)
-      if (waiting[s] == 0) ready.insert(s);
-    while (!open.empty()) {
-      const std::int32_t s = ready.empty() ? *open.begin() : *ready.begin();
-      open.erase(s);
-      ready.erase(s);
-      for (auto it = std::lower_bound(below.begin(), below.end(), std::make_pair(s, std::int32_t{-1}));
-           it != below.end() && it->first == s; ++it) {
-        if (open.count(it->second) == 0) continue;
-        sheets_[it->second].layer = std::max(sheets_[it->second].layer, sheets_[s].layer + 1);
-        if (--waiting[it->second] == 0) ready.insert(it->second);
-      }
-    }
+    return pairs;
   }
 
   std::int32_t copy_index(std::int32_t vertex, std::int32_t sheet) {

@@ -1,4 +1,4 @@
-// Random stacks: closed, intersection-free, volumes equal, filled by the volume mesher. STACKMESH_RANDOM_STACKS sets
+// Random stacks: closed, intersection-free, volumes equal, components one to one, filled by the volume mesher. STACKMESH_RANDOM_STACKS sets
 // their number (default 3,000; the build target random_stacks runs 100,000). A failing label stack is shrunk and
 // stored as text; stored ones live in tests/stitch/corpus and are run first.
 #include <cstdlib>
@@ -13,6 +13,7 @@
 #include "checks.h"
 #include "random_stacks.h"
 #include "stitch/polygons.h"
+#include "validate/check_fidelity.h"
 
 namespace stackmesh {
 namespace {
@@ -35,9 +36,26 @@ std::string problem_of(const InterfaceComplex& complex, bool filled) {
   return "";
 }
 
+/// Labels whose pieces are not the image's 6-connected components, one to one.
+std::string unmatched_components(Stitched& s, const LabelVolume& volume) {
+  for (Vec3& p : s.result.complex.points) p = s.stack.frame.to_world(p);  // no frame here mirrors
+  FidelityOptions options;
+  options.threads = 1;
+  options.stack_axis = stacking_axis(volume, StackAxis::automatic);
+  options.face_samples = options.surface_samples = 10;
+  std::string out;
+  for (const LabelFidelity& f : check_fidelity(s.complex(), volume, options))
+    if (f.input_components > 0 && !f.components_match)
+      out += "label " + std::to_string(f.label) + " has " + std::to_string(f.components) + " pieces for " +
+             std::to_string(f.input_components) + " components; ";
+  return out;
+}
+
 std::string problem_of(const LabelVolume& volume, std::uint64_t seed, bool filled) {
   try {
-    return problem_of(stitch_volume(volume, (seed / 6) % 2 ? 0.0 : 0.5, options_for(seed)).complex(), filled);
+    Stitched s = stitch_volume(volume, (seed / 6) % 2 ? 0.0 : 0.5, options_for(seed));
+    const std::string problem = problem_of(s.complex(), filled);
+    return problem.empty() ? unmatched_components(s, volume) : problem;
   } catch (const std::exception& e) {
     return e.what();
   }
