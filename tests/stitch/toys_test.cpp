@@ -121,8 +121,11 @@ TEST(StitchToys, IslandOverNothingEndsByItself) {
   EXPECT_EQ(surface_of(check, 1).components, 2);
   EXPECT_EQ(surface_of(check, 1).euler, 4);
   // The island must not lean on the far box: it rises half a gap on either side.
-  for (const Vec3& p : r.complex.points)
-    if (p.x > 25) EXPECT_LE(std::abs(p.z - 4), 2.0);
+  for (const Vec3& p : r.complex.points) {
+    if (p.x > 25) {
+      EXPECT_LE(std::abs(p.z - 4), 2.0);
+    }
+  }
 }
 
 TEST(StitchToys, FigureEightOverTwoDiscsIsOnePieceWithoutHandles) {

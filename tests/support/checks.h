@@ -66,7 +66,7 @@ inline std::string defects(const InterfaceComplex& c) {
 
 inline FillResult fill(const InterfaceComplex& c) {
   FillOptions options;
-  options.worker_path = STACKMESH_PROGRAM;
+  options.worker_path = STACKMESH_WORKER;
   options.timeout_s = 120;
   return fill_volume(c, options);
 }
