@@ -209,4 +209,20 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
   return out;
 }
 
+std::size_t count_contacts(const ComplexMesh& mesh, int threads) {
+  double sum = 0;
+  std::vector<std::int32_t> all;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t)
+    if (mesh.alive(t)) {
+      all.push_back(t);
+      sum += norm(mesh.points[mesh.triangles[t].v[0]] - mesh.points[mesh.triangles[t].v[1]]);
+    }
+  if (all.empty()) return 0;
+  TriangleGrid grid;
+  grid.build(mesh, mesh.points, 1.5 * sum / static_cast<double>(all.size()));
+  MoveLimits none;
+  none.sheet_angle_deg = 0.01;
+  return find_offenders(mesh, grid, mesh.points, mesh.points, all, none, threads).size();
+}
+
 }  // namespace stackmesh

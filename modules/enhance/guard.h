@@ -94,6 +94,9 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
                                          const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
                                          const MoveLimits& limits, int threads);
 
+/// Triangles that meet another beyond what they share, or have no area: 0 for a sound complex. Exact.
+std::size_t count_contacts(const ComplexMesh& mesh, int threads);
+
 template <class Visit>
 bool TriangleGrid::query(const Corners3& corners, double margin, Visit visit) const {
   const Box b = box_of(corners, margin);

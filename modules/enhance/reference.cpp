@@ -74,6 +74,10 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm
       const double l = norm(sum);
       f.n[k] = l > 0 ? (1 / l) * sum : Vec3{};
     }
+    const Vec3 c = (1 / 3.0) * (f.p[0] + f.p[1] + f.p[2]);
+    const double r = std::max({norm(f.p[0] - c), norm(f.p[1] - c), norm(f.p[2] - c)});
+    balls_.push_back({static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
+                      static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))), t.patch});
     faces_.push_back(f);
   }
   for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
@@ -85,15 +89,20 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm
 
 std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm) const {
   double best = std::numeric_limits<double>::infinity();
+  double near = reach_mm;
   const Face* face = nullptr;
   Vec3 foot;
   for (double r = std::min(0.5 * cell_mm_, reach_mm);; r = std::min(2 * r, reach_mm)) {
     face_cells_.around(p, r, [&](std::int32_t n) {
+      const Ball& b = balls_[n];
+      if (b.patch != patch) return;
+      const double dx = b.x - p.x, dy = b.y - p.y, dz = b.z - p.z, far = near + b.r;
+      if (dx * dx + dy * dy + dz * dz > far * far) return;
       const Face& f = faces_[n];
-      if (f.patch != patch) return;
       const Vec3 q = nearest_on_triangle(p, f.p[0], f.p[1], f.p[2]), d = p - q;
       if (dot(d, d) < best) {
         best = dot(d, d);
+        near = std::sqrt(best);
         face = &f;
         foot = q;
       }

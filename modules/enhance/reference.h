@@ -44,12 +44,18 @@ class Reference {
     std::array<Vec3, 3> p, n;  ///< corners and their normals
     std::int32_t patch;
   };
+  /// What rules a face out at a glance: its patch and the ball round it.
+  struct Ball {
+    float x, y, z, r;
+    std::int32_t patch;
+  };
   struct Segment {
     Vec3 a, b;
     std::uint64_t key;
   };
   double cell_mm_;
   std::vector<Face> faces_;
+  std::vector<Ball> balls_;
   std::vector<Segment> segments_;
   Cells face_cells_, segment_cells_;
 };

@@ -27,7 +27,7 @@ class Remesher {
       relocate_all();
       progress.advance(0.3 + 0.5 * (round + 1) / o_.rounds);
     }
-    for (int pass = 0; pass < 2; ++pass) match_reference();
+    for (int pass = 0; pass < o_.fit_passes; ++pass) fit_reference();
     regrid();
     flip_all(1 * kDegree, false, 3);
     for (int sweep = 0; sweep < o_.finish_sweeps; ++sweep)
@@ -150,9 +150,11 @@ class Remesher {
       });
   }
 
-  /// Moves along the normal so that the mean distance of the triangles round a vertex to the reference is zero.
-  void match_reference() {
-    std::vector<double> off(mesh_.triangles.size(), 0);
+  /// A step of a least-squares fit: vertices move along the normals by the mean distance to the reference of samples on
+  /// their triangles, weighted by the vertex's share in the sample.
+  void fit_reference() {
+    static constexpr double kAt[6][3] = {{.66, .17, .17}, {.17, .66, .17}, {.17, .17, .66}, {.1, .45, .45}, {.45, .1, .45}, {.45, .45, .1}};
+    std::vector<std::array<double, 3>> off(mesh_.triangles.size(), {0, 0, 0});  // per corner: weighted distance
     constexpr std::size_t kChunk = 512;
     parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(off.size(), (chunk + 1) * kChunk); ++t) {
@@ -161,17 +163,19 @@ class Remesher {
         const Vec3 a = mesh_.area_vector(m.v);
         const double l = norm(a), reach = size_[m.v[0]];
         if (!(l > 0)) continue;
-        static constexpr double kAt[4][3] = {{1 / 3., 1 / 3., 1 / 3.}, {.6, .2, .2}, {.2, .6, .2}, {.2, .2, .6}};
-        double sum = 0;
-        int found = 0;
+        std::array<double, 3> sum = {0, 0, 0}, weight = {0, 0, 0};
         for (const auto& w : kAt) {
           const Vec3 p = w[0] * mesh_.points[m.v[0]] + w[1] * mesh_.points[m.v[1]] + w[2] * mesh_.points[m.v[2]];
-          if (const auto foot = reference_.nearest(p, m.patch, reach)) {
-            sum += dot(foot->point - p, (1 / l) * a);
-            ++found;
+          const auto foot = reference_.nearest(p, m.patch, reach);
+          if (!foot) continue;
+          const double d = dot(foot->point - p, (1 / l) * a);
+          for (int k = 0; k < 3; ++k) {
+            sum[k] += w[k] * d;
+            weight[k] += w[k];
           }
         }
-        if (found) off[t] = sum / found;
+        for (int k = 0; k < 3; ++k)
+          if (weight[k] > 0) off[t][k] = sum[k] / weight[k];
       }
     });
     MoveLimits keep;
@@ -183,11 +187,13 @@ class Remesher {
       Vec3 sum;
       double weight = 0;
       for (std::int32_t t : mesh_.star[v]) {
-        const Vec3 a = mesh_.area_vector(mesh_.triangles[t].v);
-        sum = sum + off[t] * a;
+        const auto& c = mesh_.triangles[t].v;
+        const Vec3 a = mesh_.area_vector(c);
+        const int k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+        sum = sum + off[t][k] * a;
         weight += norm(a);
       }
-      Vec3 move = weight > 0 ? (0.8 / weight) * sum : Vec3{};
+      Vec3 move = weight > 0 ? (1 / weight) * sum : Vec3{};
       if (mesh_.flat[v]) move.z = 0;
       const double l = norm(move), most = 0.2 * size_[v];
       return mesh_.points[v] + (l > most ? most / l : 1.0) * move;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 
 #include "base/parallel.h"
@@ -41,16 +42,18 @@ class Sizing {
     size_.assign(mesh_.points.size(), 0);
     fixed_.assign(mesh_.points.size(), 0);
     for_range(size_.size(), o_.threads, [&](std::int32_t v) {
-      double s = 1e300;
+      double s = 1e300, most = 1e300;
       for (std::int32_t t : mesh_.star[v]) {
         const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
         for (Label l : {below, above}) {
           const auto it = o_.label_edge_mm.find(l);
           if (l != 0 && it != o_.label_edge_mm.end()) s = std::min(s, it->second);
+          const auto limit = o_.label_max_mm.find(l);
+          if (l != 0 && limit != o_.label_max_mm.end()) most = std::min(most, limit->second);
         }
       }
       fixed_[v] = s < 1e300;
-      size_[v] = s < 1e300 ? s : o_.edge_length_mm.value_or(o_.edge_max_mm);
+      size_[v] = s < 1e300 ? s : o_.edge_length_mm.value_or(most < 1e300 ? most : o_.edge_max_mm);
     });
   }
 
@@ -107,14 +110,13 @@ class Sizing {
     });
     for_range(n, o_.threads, [&](std::int32_t v) {
       if (fixed_[v]) return;
-      const double r = smooth[v] > 0 ? 1 / smooth[v] : 1e300, d = std::min(o_.deviation_mm, r);
-      size_[v] = std::clamp(r > 1e6 * o_.edge_max_mm ? o_.edge_max_mm : 2 * std::sqrt(d * (2 * r - d)), o_.edge_min_mm, o_.edge_max_mm);
+      const double r = smooth[v] > 0 ? 1 / smooth[v] : 1e300, d = std::min(o_.deviation_mm, r), most = size_[v];
+      if (r < 1e6 * most) size_[v] = std::max(std::min(2 * std::sqrt(d * (2 * r - d)), most), std::min(o_.edge_min_mm, most));
     });
   }
 
-  /// Rays from both sides of every vertex, up to the distance that would matter.
   void thickness() {
-    double mean = 0, reach = 0;
+    double mean = 0;
     std::size_t count = 0;
     for (std::size_t v = 0; v < size_.size(); ++v)
       if (!mesh_.star[v].empty()) {
@@ -122,36 +124,11 @@ class Sizing {
         ++count;
       }
     if (count == 0) return;
-    mean /= static_cast<double>(count);
-    reach = o_.edges_across * mean;
-    TriangleGrid grid;
-    grid.build(mesh_, mesh_.points, std::max(mean, o_.edge_min_mm));
-    std::vector<double> thin(size_.size(), 1e300);
+    const std::vector<double> thin = wall_thickness(mesh_, o_.edges_across * mean / static_cast<double>(count), o_.threads);
+    const std::vector<double> shell = shell_sizes(mesh_);
     for_range(size_.size(), o_.threads, [&](std::int32_t v) {
-      if (mesh_.star[v].empty() || mesh_.is_fixed(v) || !mesh_.curve[v].empty()) return;
-      Vec3 n;
-      for (std::int32_t t : mesh_.star[v]) n = n + mesh_.area_vector(mesh_.triangles[t].v);
-      n = unit(n);
-      const auto [below, above] = mesh_.labels_of(mesh_.triangles[mesh_.star[v][0]].patch);
-      for (int side = 0; side < 2; ++side) {
-        if ((side == 0 ? below : above) == 0) continue;
-        const Vec3 from = mesh_.points[v], d = (side == 0 ? -1.0 : 1.0) * n, to = from + reach * d;
-        grid.query({from, to, to}, 0, [&](std::int32_t t) {
-          const auto& w = mesh_.triangles[t].v;
-          if (w[0] == v || w[1] == v || w[2] == v) return true;
-          const Vec3 a = mesh_.points[w[0]], e = mesh_.points[w[1]] - a, f = mesh_.points[w[2]] - a;
-          const Vec3 h = cross(d, f);
-          const double det = dot(e, h);
-          if (std::abs(det) < 1e-12 * norm(e) * norm(f)) return true;
-          const Vec3 s = from - a, q = cross(s, e);
-          const double u = dot(s, h) / det, x = dot(d, q) / det, l = dot(f, q) / det;
-          if (u >= 0 && x >= 0 && u + x <= 1 && l > 0) thin[v] = std::min(thin[v], l);
-          return true;
-        });
-      }
-    });
-    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
-      if (thin[v] < 1e300) size_[v] = std::clamp(thin[v] / o_.edges_across, std::min(o_.edge_min_mm, size_[v]), size_[v]);
+      size_[v] = std::clamp(thin[v] / o_.edges_across, std::min(o_.edge_min_mm, size_[v]), size_[v]);
+      size_[v] = std::min(size_[v], 0.5 * shell[v]);
     });
   }
 
@@ -183,6 +160,78 @@ class Sizing {
 };
 
 }  // namespace
+
+std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int threads) {
+  TriangleGrid grid;
+  grid.build(mesh, mesh.points, reach_mm);
+  std::vector<double> thin(mesh.points.size(), std::numeric_limits<double>::infinity());
+  for_range(thin.size(), threads, [&](std::int32_t v) {
+    if (mesh.star[v].empty() || !mesh.curve[v].empty() || mesh.pinned[v]) return;
+    Vec3 n;
+    for (std::int32_t t : mesh.star[v]) n = n + mesh.area_vector(mesh.triangles[t].v);
+    n = unit(n);
+    const auto [below, above] = mesh.labels_of(mesh.triangles[mesh.star[v][0]].patch);
+    for (int side = 0; side < 2; ++side) {
+      if ((side == 0 ? below : above) == 0) continue;
+      const Vec3 from = mesh.points[v], d = (side == 0 ? -1.0 : 1.0) * n, to = from + reach_mm * d;
+      grid.query({from, to, to}, 0, [&](std::int32_t t) {
+        const auto& w = mesh.triangles[t].v;
+        if (w[0] == v || w[1] == v || w[2] == v) return true;
+        const Vec3 a = mesh.points[w[0]], e = mesh.points[w[1]] - a, f = mesh.points[w[2]] - a;
+        const Vec3 h = cross(d, f);
+        const double det = dot(e, h);
+        if (std::abs(det) < 1e-12 * norm(e) * norm(f)) return true;
+        const Vec3 s = from - a, q = cross(s, e);
+        const double u = dot(s, h) / det, x = dot(d, q) / det, l = dot(f, q) / det;
+        if (u >= 0 && x >= 0 && u + x <= 1 && l > 0 && l <= reach_mm) thin[v] = std::min(thin[v], l);
+        return true;
+      });
+    }
+  });
+  return thin;
+}
+
+std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
+  // A side of a triangle belongs to a label; sides of one label that meet at an edge belong to one shell.
+  std::vector<std::int32_t> parent(2 * mesh.triangles.size());
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<std::int32_t>(i);
+  const auto root = [&](std::int32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  const auto label = [&](std::int32_t i) {
+    const auto [below, above] = mesh.labels_of(mesh.triangles[i / 2].patch);
+    return i % 2 ? above : below;
+  };
+  std::vector<std::int32_t> around;
+  for (const auto& [a, b] : mesh.edges()) {
+    mesh.edge_triangles(a, b, around);
+    for (std::size_t i = 0; i < 2 * around.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::int32_t s = 2 * around[i / 2] + static_cast<std::int32_t>(i % 2), t = 2 * around[j / 2] + static_cast<std::int32_t>(j % 2);
+        if (label(s) == label(t)) parent[std::max(root(s), root(t))] = std::min(root(s), root(t));
+      }
+  }
+  std::vector<double> volume(parent.size(), 0);
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(parent.size()); ++i) {
+    if (!mesh.alive(i / 2) || label(i) == 0) continue;
+    const std::int32_t r = root(i);
+    const auto& v = mesh.triangles[i / 2].v;
+    const Vec3& o = mesh.points[mesh.triangles[r / 2].v[0]];
+    const double part = dot(mesh.points[v[0]] - o, cross(mesh.points[v[1]] - o, mesh.points[v[2]] - o)) / 6;
+    volume[r] += i % 2 ? -part : part;
+  }
+  std::vector<double> out(mesh.points.size(), std::numeric_limits<double>::infinity());
+  std::size_t count = 0;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(parent.size()); ++i) {
+    if (!mesh.alive(i / 2) || label(i) == 0) continue;
+    const std::int32_t r = root(i);
+    count += r == i;
+    for (std::int32_t v : mesh.triangles[i / 2].v) out[v] = std::min(out[v], std::cbrt(std::abs(volume[r])));
+  }
+  if (shells) *shells = count;
+  return out;
+}
 
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options) { return Sizing(mesh, options).run(); }
 

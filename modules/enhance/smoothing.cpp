@@ -56,7 +56,7 @@ std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOption
   const auto limited = [&](std::size_t v, Vec3 to) {
     Vec3 d = to - origin[v];
     if (mesh.flat[v]) d.z = 0;
-    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) + d.z * d.z / (o.limit_z_mm * o.limit_z_mm));
+    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) + d.z * d.z / (o.limit_z_mm * o.limit_z_mm)) / (o.share.empty() ? 1.0 : std::max(1e-6f, o.share[v]));
     return s > 1 ? origin[v] + (1 / s) * d : origin[v] + d;
   };
   const bool taubin = o.taubin_lambda != 0;

@@ -13,6 +13,7 @@ struct SmoothingOptions {
   double alpha = 0.1, beta = 0.6;      ///< of HC-Laplacian smoothing: pull to the original, and share of the own correction
   double taubin_lambda = 0, taubin_mu = 0;  ///< both set: low-pass smoothing instead [Taubin 1995]
   double limit_xy_mm = 0.5, limit_z_mm = 0.5;  ///< half axes of the ellipsoid about its origin that a vertex stays in
+  std::vector<float> share;            ///< of the limits for each vertex; empty: all of them
   MoveLimits keep;
   int threads = 0;
 };

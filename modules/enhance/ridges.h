@@ -1,0 +1,12 @@
+#pragma once
+#include <cstddef>
+
+#include "enhance/complex_mesh.h"
+
+namespace stackmesh {
+
+/// Makes curves of the edges at which a sheet bends by more than `feature_deg`, where they form chains of at least
+/// `length_mm` (what is shorter is left of the voxels' steps). @return edges that became ridges.
+std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm);
+
+}  // namespace stackmesh
