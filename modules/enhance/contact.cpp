@@ -74,12 +74,12 @@ bool segment_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const C
 }
 
 bool separates(const Vec3& u, const Corners3& s, const Corners3& t, double gap) {
-  const double length = norm(u);
-  if (!(length > 0)) return false;
+  const double squared = dot(u, u);
+  if (!(squared > 0)) return false;
   const double s0 = dot(u, s[0] - s[0]), s1 = dot(u, s[1] - s[0]), s2 = dot(u, s[2] - s[0]);
   const double t0 = dot(u, t[0] - s[0]), t1 = dot(u, t[1] - s[0]), t2 = dot(u, t[2] - s[0]);
-  const double need = gap * length;
-  return std::min({t0, t1, t2}) - std::max({s0, s1, s2}) >= need || std::min({s0, s1, s2}) - std::max({t0, t1, t2}) >= need;
+  const double between = std::max(std::min({t0, t1, t2}) - std::max({s0, s1, s2}), std::min({s0, s1, s2}) - std::max({t0, t1, t2}));
+  return between > 0 && between * between >= gap * gap * squared;
 }
 
 bool apart_meet(const Corners3& s, const Corners3& t) {

@@ -155,10 +155,10 @@ class Enhancement {
   }
 
   void remesh_mesh(ComplexMesh& mesh) {
-    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 4 * std::max(o_.pixel_mm, o_.gap_mm));
+    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
     std::vector<double> size = edge_sizes(mesh, sizing(mesh));
     refuse_giants(mesh, size);
-    const Reference reference(mesh, std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)));
+    const Reference reference(mesh, 0.6 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)));
     RemeshOptions r;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;

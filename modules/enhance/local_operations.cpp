@@ -183,7 +183,6 @@ double LocalOperations::smallest_round(std::int32_t v, const Vec3& at, const std
 }
 
 bool LocalOperations::relocate(std::int32_t v) {
-  if (mesh_.is_fixed(v)) return false;
   fan_normals(v);
   const Vec3 here = mesh_.points[v];
   const double now = smallest_round(v, here, normals_);
@@ -193,7 +192,31 @@ bool LocalOperations::relocate(std::int32_t v) {
     const double a = smallest_round(v, q, normals_);
     if (a > now + 0.005) places.push_back({a, q});
   };
-  if (!mesh_.curve[v].empty()) {
+  // Curves and fixed points may leave their place a little for a very narrow triangle.
+  if (now < 0.3 && (mesh_.is_fixed(v) || !mesh_.curve[v].empty())) {
+    std::size_t worst = 0;
+    double least = 10;
+    for (std::size_t i = 0; i < mesh_.star[v].size(); ++i) {
+      const double a = angle(mesh_.triangles[mesh_.star[v][i]].v);
+      if (a < least) {
+        least = a;
+        worst = i;
+      }
+    }
+    const auto& t = mesh_.triangles[mesh_.star[v][worst]].v;
+    const int k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+    const Vec3 &p = mesh_.points[t[(k + 1) % 3]], &q = mesh_.points[t[(k + 2) % 3]];
+    const Vec3 e = unit(q - p), out = here - p - dot(here - p, e) * e, mean = 0.5 * (p + q);
+    for (const Vec3& d : {unit(out), unit(here - mean), unit(here - p), unit(here - q), unit(cross(e, normals_[worst]))})
+      for (double r : {-0.12, -0.06, 0.03, 0.06, 0.12}) {
+        Vec3 to = here + (r * size_[v]) * d;
+        if (mesh_.flat[v]) to.z = here.z;
+        const double a = smallest_round(v, to, normals_);
+        if (a > now + 0.005) places.push_back({a, to});
+      }
+  }
+  if (mesh_.is_fixed(v)) {
+  } else if (!mesh_.curve[v].empty()) {
     for (std::int32_t c : mesh_.curve[v])
       for (double s : {0.1, 0.2, 0.35, 0.5}) offer(here + s * (mesh_.points[c] - here));
   } else {

@@ -24,7 +24,7 @@ class Remesher {
       split_long();
       collapse_short(round == 0 ? 8 : 3, (round == 0 ? 8 : 15) * kDegree);
       flip_all(2 * kDegree, round + 1 < o_.rounds, 2);
-      relocate_all();
+      relocate_all(round + 2 < o_.rounds ? 1 : 2);
       progress.advance(0.3 + 0.5 * (round + 1) / o_.rounds);
     }
     for (int pass = 0; pass < o_.fit_passes; ++pass) fit_reference();
@@ -86,7 +86,7 @@ class Remesher {
         const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();
         done += ops_.collapse(a_first ? a : b, a_first ? b : a, floor_rad) || ops_.collapse(a_first ? b : a, a_first ? a : b, floor_rad);
       }
-      if (done * 200 < mesh_.points.size() / 100) break;
+      if (done * 500 < mesh_.points.size()) break;
     }
   }
 
@@ -118,13 +118,13 @@ class Remesher {
   }
 
   /// To the centroid of the star (curves: between the neighbours), on the reference.
-  void relocate_all() {
+  void relocate_all(int passes) {
     MoveLimits keep;
     keep.clearance_mm = clearance();
     keep.sheet_angle_deg = o_.sheet_angle_deg;
     keep.corner_angle_deg = 25;
     keep.turn_deg = 60;
-    for (int pass = 0; pass < 2; ++pass)
+    for (int pass = 0; pass < passes; ++pass)
       move_all(keep, [&](std::int32_t v) {
         const Vec3 here = mesh_.points[v];
         Vec3 sum;
@@ -146,6 +146,7 @@ class Remesher {
         }
         if (!(weight > 0)) return here;
         const Vec3 p = (1 / weight) * sum;
+        if (norm(p - here) < 0.02 * size_[v]) return here;
         return ops_.drawn_to_reference(v, mesh_.curve[v].empty() ? p : here + 0.5 * (p - here));
       });
   }

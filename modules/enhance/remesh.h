@@ -9,7 +9,7 @@
 namespace stackmesh {
 
 struct RemeshOptions {
-  int rounds = 5;                ///< of split, collapse, flip, relocate
+  int rounds = 4;                ///< of split, collapse, flip, relocate
   int fit_passes = 3;            ///< of the least-squares fit to the reference
   int finish_sweeps = 4;         ///< over the worst triangles
   double good_angle_deg = 32;    ///< triangles below are worked on at the end

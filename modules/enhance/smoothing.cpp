@@ -108,8 +108,13 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
   TriangleGrid grid;
   grid.build(mesh, now, cell);
   std::vector<std::int32_t> suspects;
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t)
-    if (mesh.alive(t)) suspects.push_back(t);
+  const auto moves = [&](std::int32_t v) {
+    return now[v].x != before[v].x || now[v].y != before[v].y || now[v].z != before[v].z;
+  };
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t) {
+    const auto& v = mesh.triangles[t].v;
+    if (mesh.alive(t) && (moves(v[0]) || moves(v[1]) || moves(v[2]))) suspects.push_back(t);
+  }
   std::vector<std::int32_t> changed;
   for (;;) {
     ++result.rounds;
@@ -124,6 +129,10 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
     if (changed.empty()) break;
     suspects.clear();
     for (std::int32_t v : changed) {
+      if (!moves(v)) {
+        share[v] = 0;
+        continue;
+      }
       share[v] = share[v] > 0.2f ? share[v] / 2 : 0;
       now[v] = share[v] > 0 ? before[v] + static_cast<double>(share[v]) * (targets[v] - before[v]) : before[v];
       suspects.insert(suspects.end(), mesh.star[v].begin(), mesh.star[v].end());
