@@ -8,7 +8,7 @@
 namespace stackmesh::interpolate {
 namespace {
 
-constexpr float kSteps = 4096;        // values are compared in steps of this fraction of a pixel
+constexpr float kSteps = 4096;  // values are compared in steps of this fraction of a pixel
 constexpr int kLowest = std::numeric_limits<int>::min();
 constexpr int kHighest = std::numeric_limits<int>::max();
 
@@ -21,8 +21,14 @@ Pixels tissue_of(const Pixels& slice) {
 class GapFiller {
  public:
   GapFiller(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm)
-      : gap_(gap), per_gap_(per_gap), tension_(tension), pixel_mm_(pixel_mm), width_(gap.low->width),
-        height_(gap.low->height), size_(gap.low->label.size()), labels_(gap) {}
+      : gap_(gap),
+        per_gap_(per_gap),
+        tension_(tension),
+        pixel_mm_(pixel_mm),
+        width_(gap.low->width),
+        height_(gap.low->height),
+        size_(gap.low->label.size()),
+        labels_(gap) {}
 
   GapLayers run() {
     GapLayers out;

@@ -6,7 +6,8 @@
 
 namespace stackmesh::interpolate {
 
-/// A gap between two slices: its own two and their outer neighbours (null at the stack's ends), all cropped alike.
+/// A gap between two slices: its own two and their outer neighbours (null at the stack's ends), all cropped
+/// alike.
 struct Gap {
   const Pixels *before = nullptr, *low = nullptr, *high = nullptr, *after = nullptr;
 };

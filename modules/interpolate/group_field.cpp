@@ -6,7 +6,7 @@
 namespace stackmesh::interpolate {
 namespace {
 
-constexpr int kMargin = 3;           // pixels round a group that the spline may reach by overshooting
+constexpr int kMargin = 3;            // pixels round a group that the spline may reach by overshooting
 constexpr double kFullMotion = 0.05;  // relative gain of overlap from which a group follows its centre fully
 
 /// Weights of four slices at t between the second and the third: a cardinal spline.
@@ -29,11 +29,14 @@ void add_moved(const Field& field, double dx, double dy, float weight, std::vect
     const float* under = &field.value[static_cast<std::size_t>(std::clamp(y + iy, 0, height - 1)) * width];
     const float* over = &field.value[static_cast<std::size_t>(std::clamp(y + iy + 1, 0, height - 1)) * width];
     float* row = &sum[static_cast<std::size_t>(y) * width];
-    for (int x = 0; x < width; ++x) {
-      const int left = std::clamp(x + ix, 0, width - 1), right = std::clamp(x + ix + 1, 0, width - 1);
+    const auto add = [&](int x, int left, int right) {
       row[x] += weight * ((1 - fy) * ((1 - fx) * under[left] + fx * under[right]) +
                           fy * ((1 - fx) * over[left] + fx * over[right]));
-    }
+    };
+    const int first = std::clamp(-ix, 0, width), last = std::clamp(width - 1 - ix, first, width);
+    for (int x = 0; x < first; ++x) add(x, 0, std::clamp(x + ix + 1, 0, width - 1));
+    for (int x = first; x < last; ++x) add(x, x + ix, x + ix + 1);
+    for (int x = last; x < width; ++x) add(x, std::clamp(x + ix, 0, width - 1), width - 1);
   }
 }
 
@@ -123,7 +126,8 @@ GroupField::GroupField(const Partition& part, std::int32_t id, int width, int he
 
 double GroupField::share_of_motion() const {
   const Slice &low = slices_[1], &high = slices_[2];
-  const int dx = static_cast<int>(std::lround(high.x - low.x)), dy = static_cast<int>(std::lround(high.y - low.y));
+  const int dx = static_cast<int>(std::lround(high.x - low.x)),
+            dy = static_cast<int>(std::lround(high.y - low.y));
   if (dx == 0 && dy == 0) return 0;
   const double still = static_cast<double>(difference(low.field, high.field, 0, 0));
   const double moved = static_cast<double>(difference(low.field, high.field, dx, dy));

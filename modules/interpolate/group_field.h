@@ -30,8 +30,8 @@ class GroupField {
 
  private:
   struct Slice {
-    Field field;             // no value: the group is not in this slice
-    double x = 0, y = 0;     // its centre, pixels
+    Field field;          // no value: the group is not in this slice
+    double x = 0, y = 0;  // its centre, pixels
     bool present() const { return !field.value.empty(); }
   };
   template <class Belongs>

@@ -33,7 +33,8 @@ void link(const Islands& outer, const Islands& inner, const std::vector<std::int
   std::int32_t last_outer = 0, last_inner = 0;
   for (std::size_t p = 0; p < outer.of.size(); ++p) {
     const std::int32_t a = outer.of[p], b = inner.of[p];
-    if (a == 0 || b == 0 || (a == last_outer && b == last_inner) || outer.label[a] != inner.label[b]) continue;
+    if (a == 0 || b == 0 || (a == last_outer && b == last_inner) || outer.label[a] != inner.label[b])
+      continue;
     (groups[group_of[b]].*links).push_back(last_outer = a);
     last_inner = b;
   }

@@ -33,12 +33,13 @@ Islands find_islands(const Pixels& slice);
 /// The islands of two neighbouring slices, grouped by label and overlap: the 6-connected parts of the slab.
 struct Group {
   std::uint16_t label = 0;
-  Box low, high;                           ///< of its islands in either slice; empty if it has none there
-  std::vector<std::int32_t> before, after;  ///< islands of the slices below and above the slab that go on from it
+  Box low, high;  ///< of its islands in either slice; empty if it has none there
+  std::vector<std::int32_t> before,
+      after;  ///< islands of the slices below and above the slab that go on from it
 };
 struct Groups {
-  std::vector<Group> list;                         ///< [0] is background
-  std::vector<std::int32_t> of_low, of_high;       ///< group of an island
+  std::vector<Group> list;                    ///< [0] is background
+  std::vector<std::int32_t> of_low, of_high;  ///< group of an island
 };
 /// `before` and `after` may be null (the stack ends).
 Groups group_islands(const Islands& low, const Islands& high, const Islands* before, const Islands* after);

@@ -113,9 +113,9 @@ class Mender {
         }
       });
     }
-    loose.erase(std::remove_if(loose.begin(), loose.end(),
-                               [&](Voxel v) { return attached[v.layer][v.pixel] != 0; }),
-                loose.end());
+    loose.erase(
+        std::remove_if(loose.begin(), loose.end(), [&](Voxel v) { return attached[v.layer][v.pixel] != 0; }),
+        loose.end());
     drop(loose);
   }
 
@@ -142,9 +142,8 @@ class Mender {
       std::int32_t best = 0;
       for (int i = 0; i < n; ++i) {
         const int faces = static_cast<int>(std::count(near.begin(), near.begin() + n, near[i]));
-        const bool free = near[i] != 0 && std::none_of(near.begin(), near.begin() + n, [&](std::int32_t g) {
-          return clash(g, near[i]);
-        });
+        const bool free = near[i] != 0 && std::none_of(near.begin(), near.begin() + n,
+                                                       [&](std::int32_t g) { return clash(g, near[i]); });
         if (free && faces > best_faces) {
           best_faces = faces;
           best = near[i];
@@ -161,6 +160,8 @@ class Mender {
 
 }  // namespace
 
-std::size_t keep_components(GapLayers& gap) { return Mender(gap).run(); }
+std::size_t keep_components(GapLayers& gap) {
+  return Mender(gap).run();
+}
 
 }  // namespace stackmesh::interpolate

@@ -12,8 +12,9 @@ struct GapLayers {
 };
 
 /// Mends the virtual layers so that each group hangs together with its real islands, and no two groups of one
-/// label touch by a face. Given: pixels of one group in both real slices have it in all layers. What offends is
-/// given to the background or, where it lies inside tissue, to a neighbour. @return voxels that were changed.
+/// label touch by a face. Given: pixels of one group in both real slices have it in all layers. What offends
+/// is given to the background or, where it lies inside tissue, to a neighbour. @return voxels that were
+/// changed.
 std::size_t keep_components(GapLayers& gap);
 
 }  // namespace stackmesh::interpolate

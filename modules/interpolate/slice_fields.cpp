@@ -21,7 +21,8 @@ class LowerEnvelope {
       double s = -std::numeric_limits<double>::infinity();
       while (top >= 0) {
         const int p = parabola_[top];
-        s = ((f[q] - f[p]) / step2_ + static_cast<double>(q) * q - static_cast<double>(p) * p) / (2.0 * (q - p));
+        s = ((f[q] - f[p]) / step2_ + static_cast<double>(q) * q - static_cast<double>(p) * p) /
+            (2.0 * (q - p));
         if (s > from_[top]) break;
         --top;
       }
@@ -45,7 +46,8 @@ class LowerEnvelope {
 };
 
 /// Distance from each pixel with in == wanted to the nearest other one, less half a pixel; 0 for the others.
-void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel_mm, std::vector<float>& out) {
+void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel_mm,
+               std::vector<float>& out) {
   const int width = mask.box.width(), height = mask.box.height();
   const double sx = pixel_mm[0], sy = pixel_mm[1];
   constexpr int kNone = std::numeric_limits<int>::max() / 4;
@@ -81,7 +83,8 @@ void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel
 
 }  // namespace
 
-Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm, double limit_mm) {
+Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm,
+                      double limit_mm) {
   const int width = mask.box.width(), height = mask.box.height();
   const float limit = static_cast<float>(limit_mm);
   Field field;

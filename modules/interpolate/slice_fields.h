@@ -22,10 +22,11 @@ struct Mask {
   std::vector<std::uint8_t> in;
 };
 
-/// For each pixel of `box` the distance (mm) to the mask's border, positive inside: exact between pixel centres
-/// (cv::distanceTransform, or [Felzenszwalb and Huttenlocher 2012] where pixels are not square), less half a
-/// pixel, so that the zero lies on the cracks. Pixels outside mask.box do not count, as unknown; distances are
-/// cut at limit_mm. `box` lies within mask.box.
-Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm, double limit_mm);
+/// For each pixel of `box` the distance (mm) to the mask's border, positive inside: exact between pixel
+/// centres (cv::distanceTransform, or [Felzenszwalb and Huttenlocher 2012] where pixels are not square), less
+/// half a pixel, so that the zero lies on the cracks. Pixels outside mask.box do not count, as unknown;
+/// distances are cut at limit_mm. `box` lies within mask.box.
+Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm,
+                      double limit_mm);
 
 }  // namespace stackmesh::interpolate

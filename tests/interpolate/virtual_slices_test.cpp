@@ -54,7 +54,8 @@ TEST(VirtualSlices, GeometryAndLabelsAreKept) {
 
 TEST(VirtualSlices, AutomaticNumberMakesTheGapAPixel) {
   LabelVolume in = disc_stack({10, 12, 14}, 40);
-  for (const auto& [gap, expected] : std::map<double, int>{{1, 0}, {1.5, 0}, {1.6, 1}, {3, 2}, {7.4, 6}, {7.6, 7}}) {
+  for (const auto& [gap, expected] :
+       std::map<double, int>{{1, 0}, {1.5, 0}, {1.6, 1}, {3, 2}, {7.4, 6}, {7.6, 7}}) {
     in.spacing_mm = {1, 1.2, gap};  // the smaller in-plane spacing counts
     EXPECT_EQ(add_virtual_slices(in, 2, {}).per_gap, expected) << gap;
   }
@@ -146,7 +147,8 @@ TEST(VirtualSlices, IslandWithoutCounterpartEndsAloneAtHalfWay) {
                     alone = interpolated(with_far_part(false), 9).volume;
   for (int k = 0; k < both.size[2]; ++k) {
     for (int y = 0; y < 40; ++y)
-      for (int x = 0; x < 40; ++x) ASSERT_EQ(both.voxels[both.index(x, y, k)], alone.voxels[alone.index(x, y, k)]);
+      for (int x = 0; x < 40; ++x)
+        ASSERT_EQ(both.voxels[both.index(x, y, k)], alone.voxels[alone.index(x, y, k)]);
     EXPECT_EQ(area(alone, k, 1) > 0, k > 5 && k < 15) << k;
   }
 }
@@ -196,7 +198,8 @@ TEST(VirtualSlices, NoLabelAppearsThatNeitherSliceHas) {
 }
 
 /// The components of the output are those of the input, one to one.
-void expect_same_components(const LabelVolume& in, const LabelVolume& out, int per_gap, const std::string& what) {
+void expect_same_components(const LabelVolume& in, const LabelVolume& out, int per_gap,
+                            const std::string& what) {
   const std::vector<int> a = components(in), b = components(out);
   std::map<int, int> forth, back;
   for (int k = 0; k < in.size[2]; ++k)
@@ -219,7 +222,8 @@ TEST(VirtualSlices, ComponentsAreThoseOfTheInput) {
     InterpolateOptions options;
     options.per_gap = per_gap;
     options.tension = seed % 3 == 0 ? 1 : seed % 3 == 1 ? 0.25 : 0.5;
-    expect_same_components(in, add_virtual_slices(in, 2, options).volume, per_gap, "seed " + std::to_string(seed));
+    expect_same_components(in, add_virtual_slices(in, 2, options).volume, per_gap,
+                           "seed " + std::to_string(seed));
     if (HasFatalFailure()) return;
   }
 }

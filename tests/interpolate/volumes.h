@@ -26,7 +26,8 @@ LabelVolume shapes(int width, int height, int slices, double gap_mm, F label) {
   v.labels = {{0, ""}, {1, ""}, {2, ""}, {3, ""}};
   for (int k = 0; k < slices; ++k)
     for (int j = 0; j < height; ++j)
-      for (int i = 0; i < width; ++i) v.voxels.push_back(static_cast<std::uint16_t>(label(i + 0.5, j + 0.5, k)));
+      for (int i = 0; i < width; ++i)
+        v.voxels.push_back(static_cast<std::uint16_t>(label(i + 0.5, j + 0.5, k)));
   return v;
 }
 
@@ -47,7 +48,9 @@ inline double area(const LabelVolume& v, int k, int label) {
   return n;
 }
 
-inline double radius(const LabelVolume& v, int k) { return std::sqrt(area(v, k, 1) / M_PI); }
+inline double radius(const LabelVolume& v, int k) {
+  return std::sqrt(area(v, k, 1) / M_PI);
+}
 
 inline double centre_x(const LabelVolume& v, int k, int label) {
   double sum = 0;
@@ -71,9 +74,11 @@ inline std::vector<int> components(const LabelVolume& v) {
       front.pop();
       const int i = static_cast<int>(p % v.size[0]), j = static_cast<int>(p / v.size[0] % v.size[1]),
                 k = static_cast<int>(p / v.size[0] / v.size[1]);
-      const int next[6][3] = {{i - 1, j, k}, {i + 1, j, k}, {i, j - 1, k}, {i, j + 1, k}, {i, j, k - 1}, {i, j, k + 1}};
+      const int next[6][3] = {{i - 1, j, k}, {i + 1, j, k}, {i, j - 1, k},
+                              {i, j + 1, k}, {i, j, k - 1}, {i, j, k + 1}};
       for (const auto& n : next) {
-        if (n[0] < 0 || n[1] < 0 || n[2] < 0 || n[0] >= v.size[0] || n[1] >= v.size[1] || n[2] >= v.size[2]) continue;
+        if (n[0] < 0 || n[1] < 0 || n[2] < 0 || n[0] >= v.size[0] || n[1] >= v.size[1] || n[2] >= v.size[2])
+          continue;
         const std::size_t q = v.index(n[0], n[1], n[2]);
         if (of[q] != 0 || v.voxels[q] != v.voxels[p]) continue;
         of[q] = count;
