@@ -40,6 +40,7 @@ class Enhancement {
     volumes_ = label_volumes(mesh);
     shell_sizes(mesh, &shells_);
     result_.complex = stitched_;
+    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
     if (o_.smooth_passes > 0 && !step("smoothed", mesh, [&] { smooth_mesh(mesh); })) return std::move(result_);
     progress_.advance(0.25);
     if (o_.remesh && step("enhanced", mesh, [&] { remesh_mesh(mesh); })) compare_volumes(mesh);
@@ -155,7 +156,6 @@ class Enhancement {
   }
 
   void remesh_mesh(ComplexMesh& mesh) {
-    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
     std::vector<double> size = edge_sizes(mesh, sizing(mesh));
     refuse_giants(mesh, size);
     const Reference reference(mesh, 0.6 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)));

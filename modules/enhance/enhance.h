@@ -20,7 +20,7 @@ struct EnhanceOptions {
   std::optional<double> edge_min_mm;        ///< by curvature: default 1.5 pixels
   std::optional<double> edge_max_mm;        ///< by curvature: default a tenth of the label's box
   double gradation = 1.3;                   ///< largest ratio of neighbouring edge lengths
-  double feature_deg = 70;                  ///< edges of the smoothed surface that bend by more may be ridges
+  double feature_deg = 70;                  ///< straight chains of edges that bend by more are ridges, from 8 pixels on
   double sheet_angle_deg = 20;              ///< angles between sheets are kept above it ("not below, and not worse")
   int threads = 0;                          ///< 0: all; the result does not depend on it
 };

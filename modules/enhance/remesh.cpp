@@ -154,7 +154,7 @@ class Remesher {
   /// A step of a least-squares fit: vertices move along the normals by the mean distance to the reference of samples on
   /// their triangles, weighted by the vertex's share in the sample.
   void fit_reference() {
-    static constexpr double kAt[6][3] = {{.66, .17, .17}, {.17, .66, .17}, {.17, .17, .66}, {.1, .45, .45}, {.45, .1, .45}, {.45, .45, .1}};
+    static constexpr double kAt[3][3] = {{2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
     std::vector<std::array<double, 3>> off(mesh_.triangles.size(), {0, 0, 0});  // per corner: weighted distance
     constexpr std::size_t kChunk = 512;
     parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {

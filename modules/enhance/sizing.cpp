@@ -162,8 +162,14 @@ class Sizing {
 }  // namespace
 
 std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int threads) {
+  double sum = 0, count = 0;
+  for (const MeshTriangle& t : mesh.triangles)
+    if (t.patch >= 0) {
+      sum += norm(mesh.points[t.v[0]] - mesh.points[t.v[1]]);
+      ++count;
+    }
   TriangleGrid grid;
-  grid.build(mesh, mesh.points, reach_mm);
+  grid.build(mesh, mesh.points, std::max(0.5 * reach_mm, 1.5 * sum / std::max(count, 1.0)));
   std::vector<double> thin(mesh.points.size(), std::numeric_limits<double>::infinity());
   for_range(thin.size(), threads, [&](std::int32_t v) {
     if (mesh.star[v].empty() || !mesh.curve[v].empty() || mesh.pinned[v]) return;
