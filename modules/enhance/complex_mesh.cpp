@@ -8,7 +8,9 @@
 namespace stackmesh {
 namespace {
 
-bool holds(const std::array<std::int32_t, 3>& v, std::int32_t x) { return v[0] == x || v[1] == x || v[2] == x; }
+bool holds(const std::array<std::int32_t, 3>& v, std::int32_t x) {
+  return v[0] == x || v[1] == x || v[2] == x;
+}
 
 std::int32_t third(const std::array<std::int32_t, 3>& v, std::int32_t a, std::int32_t b) {
   for (std::int32_t x : v)
@@ -132,13 +134,16 @@ bool ComplexMesh::is_pinched(std::int32_t v) const {
   for (int f = 0; f < count; ++f)
     for (std::int32_t c : curve[v]) {
       int touching = 0;
-      for (std::size_t i = 0; i < fan.size(); ++i) touching += fan[i] == f && holds(triangles[star[v][i]].v, c);
+      for (std::size_t i = 0; i < fan.size(); ++i)
+        touching += fan[i] == f && holds(triangles[star[v][i]].v, c);
       if (touching != 1) return true;
     }
   return false;
 }
 
-bool ComplexMesh::is_curve_edge(std::int32_t a, std::int32_t b) const { return has(curve[a], b); }
+bool ComplexMesh::is_curve_edge(std::int32_t a, std::int32_t b) const {
+  return has(curve[a], b);
+}
 
 bool ComplexMesh::has_edge(std::int32_t a, std::int32_t b) const {
   for (std::int32_t t : star[a])
@@ -210,7 +215,8 @@ bool ComplexMesh::can_collapse(std::int32_t gone, std::int32_t kept) const {
     for (std::int32_t c : curve[gone])
       if (c != kept && is_curve_edge(c, kept)) return false;  // a loop of three
   }
-  // Common neighbours must be the apexes of the edge's triangles, and no triangle of `gone` may land on another.
+  // Common neighbours must be the apexes of the edge's triangles, and no triangle of `gone` may land on
+  // another.
   std::int32_t apexes[16];
   int count = 0;
   for (std::int32_t t : star[gone])
@@ -284,7 +290,8 @@ bool ComplexMesh::can_flip(std::int32_t a, std::int32_t b, std::array<std::int32
   return apex[0] != apex[1] && !has_edge(apex[0], apex[1]);
 }
 
-void ComplexMesh::flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2> t, std::array<std::int32_t, 2> apex) {
+void ComplexMesh::flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2> t,
+                       std::array<std::int32_t, 2> apex) {
   const auto [c, d] = apex;
   triangles[t[0]].v = {a, d, c};
   triangles[t[1]].v = {d, b, c};

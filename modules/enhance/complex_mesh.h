@@ -8,17 +8,17 @@
 
 namespace stackmesh {
 
-/// A triangle while the complex is changed: its normal points from the smaller label of its pair to the larger.
-/// `patch` stands for the label pair and for lying in a flat cap; a dead triangle has patch -1.
+/// A triangle while the complex is changed: its normal points from the smaller label of its pair to the
+/// larger. `patch` stands for the label pair and for lying in a flat cap; a dead triangle has patch -1.
 struct MeshTriangle {
   std::array<std::int32_t, 3> v = {0, 0, 0};
   std::int32_t patch = -1;
 };
 
-/// An interface complex that can be changed. An edge is a *curve* edge when it has other than two triangles, when
-/// its two differ in patch, or when it is a ridge. A vertex with no curve edge is free in its sheet, one with two
-/// is bound to its curve, any other (and a pinched one) is a fixed point. Operations only change the structure;
-/// whether one is allowed is asked of `can_collapse`, `can_flip` and the guard.
+/// An interface complex that can be changed. An edge is a *curve* edge when it has other than two triangles,
+/// when its two differ in patch, or when it is a ridge. A vertex with no curve edge is free in its sheet, one
+/// with two is bound to its curve, any other (and a pinched one) is a fixed point. Operations only change the
+/// structure; whether one is allowed is asked of `can_collapse`, `can_flip` and the guard.
 class ComplexMesh {
  public:
   /// `cap_area_mm2`: connected, exactly horizontal triangles of at least this area together are a flat cap.
@@ -53,8 +53,10 @@ class ComplexMesh {
   /// Returns the numbers of the triangles that died; those of `gone` that stay now hold `kept`.
   std::vector<std::int32_t> collapse(std::int32_t gone, std::int32_t kept);
 
-  /// The two triangles (in order t0 holds a->b) and their apexes; false for a curve edge or where c d is an edge.
-  bool can_flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2>& t, std::array<std::int32_t, 2>& apex) const;
+  /// The two triangles (in order t0 holds a->b) and their apexes; false for a curve edge or where c d is an
+  /// edge.
+  bool can_flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2>& t,
+                std::array<std::int32_t, 2>& apex) const;
   /// Turns the edge of t[0] = (a b c), t[1] = (b a d) into c d.
   void flip(std::int32_t a, std::int32_t b, std::array<std::int32_t, 2> t, std::array<std::int32_t, 2> apex);
 
@@ -79,8 +81,8 @@ class ComplexMesh {
   std::vector<std::pair<Label, Label>> pairs_;
 };
 
-/// Smallest angle of a triangle, as its cosine's negative would order it: the sine-free measure used in loops is
-/// the angle itself, radians.
+/// Smallest angle of a triangle, as its cosine's negative would order it: the sine-free measure used in loops
+/// is the angle itself, radians.
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace stackmesh

@@ -10,7 +10,9 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+int sign(double x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
 
 int orient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = c - a, w = d - a, n = cross(u, v);
@@ -20,7 +22,8 @@ int orient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                       (std::abs(u.x * v.y) + std::abs(u.y * v.x)) * std::abs(w.z);
   if (size > 1e-200 && std::abs(det) > 2e-15 * size) return sign(det);
   using P = Kernel::Point_3;
-  return static_cast<int>(CGAL::orientation(P(a.x, a.y, a.z), P(b.x, b.y, b.z), P(c.x, c.y, c.z), P(d.x, d.y, d.z)));
+  return static_cast<int>(
+      CGAL::orientation(P(a.x, a.y, a.z), P(b.x, b.y, b.z), P(c.x, c.y, c.z), P(d.x, d.y, d.z)));
 }
 
 struct Flat2 {
@@ -41,10 +44,13 @@ int view_axis(const Corners3& t) {
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-Flat2 look(const Vec3& p, int axis) { return axis == 0 ? Flat2{p.y, p.z} : axis == 1 ? Flat2{p.z, p.x} : Flat2{p.x, p.y}; }
+Flat2 look(const Vec3& p, int axis) {
+  return axis == 0 ? Flat2{p.y, p.z} : axis == 1 ? Flat2{p.z, p.x} : Flat2{p.x, p.y};
+}
 
 bool on_line_between(const Flat2& p, const Flat2& a, const Flat2& b) {
-  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y && p.y <= std::max(a.y, b.y);
+  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
+         p.y <= std::max(a.y, b.y);
 }
 
 bool flat_segments_meet(const Flat2& p, const Flat2& q, const Flat2& a, const Flat2& b) {
@@ -63,7 +69,8 @@ bool segment_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const C
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) {
     const int axis = view_axis(t);
-    const Flat2 a = look(t[0], axis), b = look(t[1], axis), c = look(t[2], axis), u = look(p, axis), v = look(q, axis);
+    const Flat2 a = look(t[0], axis), b = look(t[1], axis), c = look(t[2], axis), u = look(p, axis),
+                v = look(q, axis);
     return flat_inside(u, a, b, c) || flat_inside(v, a, b, c) || flat_segments_meet(u, v, a, b) ||
            flat_segments_meet(u, v, b, c) || flat_segments_meet(u, v, c, a);
   }
@@ -78,7 +85,8 @@ bool separates(const Vec3& u, const Corners3& s, const Corners3& t, double gap) 
   if (!(squared > 0)) return false;
   const double s0 = dot(u, s[0] - s[0]), s1 = dot(u, s[1] - s[0]), s2 = dot(u, s[2] - s[0]);
   const double t0 = dot(u, t[0] - s[0]), t1 = dot(u, t[1] - s[0]), t2 = dot(u, t[2] - s[0]);
-  const double between = std::max(std::min({t0, t1, t2}) - std::max({s0, s1, s2}), std::min({s0, s1, s2}) - std::max({t0, t1, t2}));
+  const double between = std::max(std::min({t0, t1, t2}) - std::max({s0, s1, s2}),
+                                  std::min({s0, s1, s2}) - std::max({t0, t1, t2}));
   return between > 0 && between * between >= gap * gap * squared;
 }
 
@@ -90,12 +98,14 @@ bool apart_meet(const Corners3& s, const Corners3& t) {
   if (on_t[0] == on_t[1] && on_t[1] == on_t[2] && on_t[0] != 0) return false;
   for (int k = 0; k < 3; ++k) {
     const int n = (k + 1) % 3;
-    if (segment_meets(t[k], t[n], on_s[k], on_s[n], s) || segment_meets(s[k], s[n], on_t[k], on_t[n], t)) return true;
+    if (segment_meets(t[k], t[n], on_s[k], on_s[n], s) || segment_meets(s[k], s[n], on_t[k], on_t[n], t))
+      return true;
   }
   return false;
 }
 
-/// What the two have in common is convex and holds the corner: it is more exactly when a far edge meets the other.
+/// What the two have in common is convex and holds the corner: it is more exactly when a far edge meets the
+/// other.
 bool corner_meet(const Corners3& s, int i, const Corners3& t, int j) {
   const Vec3 &sb = s[(i + 1) % 3], &sc = s[(i + 2) % 3], &tb = t[(j + 1) % 3], &tc = t[(j + 2) % 3];
   const int b = orient(s[0], s[1], s[2], tb), c = orient(s[0], s[1], s[2], tc);
@@ -106,7 +116,8 @@ bool corner_meet(const Corners3& s, int i, const Corners3& t, int j) {
 }
 
 bool edge_meet(const Corners3& s, const Corners3& t, const SharedCorners& h) {
-  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]], &d = t[3 - h.in_t[0] - h.in_t[1]];
+  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]],
+             &d = t[3 - h.in_t[0] - h.in_t[1]];
   if (orient(a, b, c, d) != 0) return false;
   const int axis = view_axis(s);
   const Flat2 p = look(a, axis), q = look(b, axis);
@@ -157,10 +168,14 @@ bool certainly_apart(const Corners3& s, const Corners3& t, double gap) {
 
 bool triangles_meet(const Corners3& s, const Corners3& t, const SharedCorners& shared) {
   switch (shared.count) {
-    case 0: return apart_meet(s, t);
-    case 1: return corner_meet(s, shared.in_s[0], t, shared.in_t[0]);
-    case 2: return edge_meet(s, t, shared);
-    default: return true;
+    case 0:
+      return apart_meet(s, t);
+    case 1:
+      return corner_meet(s, shared.in_s[0], t, shared.in_t[0]);
+    case 2:
+      return edge_meet(s, t, shared);
+    default:
+      return true;
   }
 }
 
@@ -193,15 +208,18 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 double squared_distance(const Corners3& s, const Corners3& t) {
   double best = 1e300;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) best = std::min(best, squared_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
-    const Vec3 g = s[i] - nearest_on_triangle(s[i], t[0], t[1], t[2]), h = t[i] - nearest_on_triangle(t[i], s[0], s[1], s[2]);
+    for (int j = 0; j < 3; ++j)
+      best = std::min(best, squared_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+    const Vec3 g = s[i] - nearest_on_triangle(s[i], t[0], t[1], t[2]),
+               h = t[i] - nearest_on_triangle(t[i], s[0], s[1], s[2]);
     best = std::min({best, dot(g, g), dot(h, h)});
   }
   return best;
 }
 
 double sheet_cosine(const Corners3& s, const Corners3& t, const SharedCorners& h) {
-  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]], &d = t[3 - h.in_t[0] - h.in_t[1]];
+  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]],
+             &d = t[3 - h.in_t[0] - h.in_t[1]];
   const Vec3 m = cross(b - a, c - a), n = cross(b - a, d - a);
   const double size = std::sqrt(dot(m, m) * dot(n, n));
   return size > 0 ? dot(m, n) / size : 1;

@@ -16,8 +16,8 @@ struct SharedCorners {
 };
 SharedCorners shared_corners(const std::array<std::int32_t, 3>& s, const std::array<std::int32_t, 3>& t);
 
-/// True when a plane keeps two triangles without a common corner at least `gap` apart (gap well above rounding);
-/// false when no such plane was found.
+/// True when a plane keeps two triangles without a common corner at least `gap` apart (gap well above
+/// rounding); false when no such plane was found.
 bool certainly_apart(const Corners3& s, const Corners3& t, double gap);
 
 /// True when the triangles (of non-zero area) meet beyond the corners that they share by index. Exact.
@@ -26,7 +26,8 @@ bool triangles_meet(const Corners3& s, const Corners3& t, const SharedCorners& s
 /// Distance of two triangles that do not meet, squared.
 double squared_distance(const Corners3& s, const Corners3& t);
 
-/// Cosine of the angle between the half planes of two triangles at their common edge; 1: folded onto each other.
+/// Cosine of the angle between the half planes of two triangles at their common edge; 1: folded onto each
+/// other.
 double sheet_cosine(const Corners3& s, const Corners3& t, const SharedCorners& shared);
 
 /// Nearest point of a triangle.

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "enhance/ridges.h"
 #include "enhance/remesh.h"
+#include "enhance/ridges.h"
 #include "enhance/sizing.h"
 #include "enhance/smoothing.h"
 
@@ -15,7 +15,8 @@ namespace stackmesh {
 namespace {
 
 constexpr double kTriangleLimit = 50e6;
-// The edges that come out scatter about 0.94 of what the remesher aims at; with this few exceed what was asked for.
+// The edges that come out scatter about 0.94 of what the remesher aims at; with this few exceed what was
+// asked for.
 constexpr double kAim = 0.87;
 
 std::string number(double x) {
@@ -41,7 +42,8 @@ class Enhancement {
     shell_sizes(mesh, &shells_);
     result_.complex = stitched_;
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
-    if (o_.smooth_passes > 0 && !step("smoothed", mesh, [&] { smooth_mesh(mesh); })) return std::move(result_);
+    if (o_.smooth_passes > 0 && !step("smoothed", mesh, [&] { smooth_mesh(mesh); }))
+      return std::move(result_);
     progress_.advance(0.25);
     if (o_.remesh && step("enhanced", mesh, [&] { remesh_mesh(mesh); })) compare_volumes(mesh);
     progress_.advance(1);
@@ -51,7 +53,8 @@ class Enhancement {
  private:
   void check() const {
     const auto positive = [](const std::optional<double>& x, const char* what) {
-      if (x && !(*x > 0 && std::isfinite(*x))) fail_usage(std::string(what) + " must be a positive length in mm", number(*x), "give a larger one");
+      if (x && !(*x > 0 && std::isfinite(*x)))
+        fail_usage(std::string(what) + " must be a positive length in mm", number(*x), "give a larger one");
     };
     positive(o_.edge_length_mm, "edge length");
     positive(o_.deviation_mm, "deviation");
@@ -59,10 +62,13 @@ class Enhancement {
     positive(o_.edge_max_mm, "largest edge length");
     positive(o_.pixel_mm, "pixel");
     positive(o_.gap_mm, "gap between sections");
-    for (const auto& [label, x] : o_.label_edge_mm) positive(x, ("edge length of label " + std::to_string(label)).c_str());
-    if (!(o_.gradation > 1)) fail_usage("gradation must be above 1", number(o_.gradation), "1.3 is the default");
+    for (const auto& [label, x] : o_.label_edge_mm)
+      positive(x, ("edge length of label " + std::to_string(label)).c_str());
+    if (!(o_.gradation > 1))
+      fail_usage("gradation must be above 1", number(o_.gradation), "1.3 is the default");
     if (o_.edge_min_mm && o_.edge_max_mm && *o_.edge_min_mm > *o_.edge_max_mm)
-      fail_usage("the smallest edge length is above the largest", number(*o_.edge_min_mm) + " > " + number(*o_.edge_max_mm), "swap them");
+      fail_usage("the smallest edge length is above the largest",
+                 number(*o_.edge_min_mm) + " > " + number(*o_.edge_max_mm), "swap them");
   }
 
   void warn(const std::string& text) { result_.warnings.push_back(text); }
@@ -76,7 +82,9 @@ class Enhancement {
     const std::size_t contacts = count_contacts(mesh, o_.threads);
     if (contacts > 0 || shells != shells_) {
       warn("the " + std::string(level) + " surface was given up for the " + result_.level + " one: " +
-           (contacts > 0 ? std::to_string(contacts) + " triangles meet others" : "closed shells went from " + std::to_string(shells_) + " to " + std::to_string(shells)));
+           (contacts > 0
+                ? std::to_string(contacts) + " triangles meet others"
+                : "closed shells went from " + std::to_string(shells_) + " to " + std::to_string(shells)));
       return false;
     }
     result_.level = level;
@@ -93,9 +101,11 @@ class Enhancement {
     s.keep.sheet_angle_deg = o_.sheet_angle_deg;
     s.threads = o_.threads;
     // What is thin or small moves less: it has no volume to spare.
-    const std::vector<double> thin = wall_thickness(mesh, 2 * o_.pixel_mm, o_.threads), shell = shell_sizes(mesh);
+    const std::vector<double> thin = wall_thickness(mesh, 2 * o_.pixel_mm, o_.threads),
+                              shell = shell_sizes(mesh);
     for (std::size_t v = 0; v < thin.size(); ++v)
-      s.share.push_back(static_cast<float>(std::min({1.0, thin[v] / (1.5 * o_.pixel_mm), shell[v] / (4 * o_.pixel_mm)})));
+      s.share.push_back(
+          static_cast<float>(std::min({1.0, thin[v] / (1.5 * o_.pixel_mm), shell[v] / (4 * o_.pixel_mm)})));
     const SmoothingResult r = smooth(mesh, s);
     result_.counts.smoothed = r.moved;
     result_.counts.held_back = r.held_back;
@@ -108,7 +118,8 @@ class Enhancement {
     s.gradation = o_.gradation;
     s.deviation_mm = o_.deviation_mm.value_or(0.5 * o_.pixel_mm);
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
-      warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" + number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
+      warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
+           number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
     s.edge_min_mm = o_.edge_min_mm.value_or(1.5 * o_.pixel_mm);
     std::map<Label, std::array<Vec3, 2>> boxes;
     for (const MeshTriangle& t : mesh.triangles) {
@@ -131,8 +142,8 @@ class Enhancement {
       const double asked = own != o_.label_edge_mm.end() ? own->second : o_.edge_length_mm.value_or(0);
       if (asked > longest / 2) {
         s.label_edge_mm[label] = kAim * longest / 3;
-        warn("label " + std::to_string(label) + ": an edge length of " + number(asked) + " mm is too large for its " + number(longest) + " mm; " +
-             number(longest / 3) + " mm is used");
+        warn("label " + std::to_string(label) + ": an edge length of " + number(asked) +
+             " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used");
       } else if (own != o_.label_edge_mm.end()) {
         s.label_edge_mm[label] = kAim * asked;
       }
@@ -151,8 +162,10 @@ class Enhancement {
       estimate += norm(mesh.area_vector(t.v)) / (0.39 * l * l);
     }
     if (estimate > kTriangleLimit)
-      fail_usage("the edge lengths asked for mean about " + number(estimate / 1e6) + " million triangles, more than the 50 million allowed",
-                 o_.edge_length_mm ? "edge length " + number(*o_.edge_length_mm) + " mm" : "by curvature", "ask for longer edges");
+      fail_usage("the edge lengths asked for mean about " + number(estimate / 1e6) +
+                     " million triangles, more than the 50 million allowed",
+                 o_.edge_length_mm ? "edge length " + number(*o_.edge_length_mm) + " mm" : "by curvature",
+                 "ask for longer edges");
   }
 
   void remesh_mesh(ComplexMesh& mesh) {
@@ -181,8 +194,8 @@ class Enhancement {
     for (const auto& [label, v] : label_volumes(mesh)) {
       const double change = v / volumes_[label] - 1;
       if (std::abs(change) > 0.05)
-        warn("label " + std::to_string(label) + ": its volume changed by " + number(100 * change) + " % of " + number(volumes_[label]) +
-             " mm3 in the enhancement (it is small or thin for the edge length)");
+        warn("label " + std::to_string(label) + ": its volume changed by " + number(100 * change) + " % of " +
+             number(volumes_[label]) + " mm3 in the enhancement (it is small or thin for the edge length)");
     }
   }
 
@@ -196,7 +209,8 @@ class Enhancement {
 
 }  // namespace
 
-EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options, Progress& progress) {
+EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options,
+                              Progress& progress) {
   return Enhancement(stitched, options, progress).run();
 }
 

@@ -10,26 +10,28 @@
 namespace stackmesh {
 
 struct EnhanceOptions {
-  int smooth_passes = 5;                    ///< HC-Laplacian; 0: no smoothing
-  double pixel_mm = 1;                      ///< in-plane pixel of the sections
-  double gap_mm = 1;                        ///< between sections; with the pixel it limits how far smoothing moves a vertex
-  bool remesh = true;                       ///< false: smoothing only
-  std::optional<double> edge_length_mm;     ///< uniform edge length; unset: by curvature
-  std::map<Label, double> label_edge_mm;    ///< edge length per label; where labels meet the smaller counts
-  std::optional<double> deviation_mm;       ///< by curvature: distance of an edge to the curved surface; default half a pixel
-  std::optional<double> edge_min_mm;        ///< by curvature: default 1.5 pixels
-  std::optional<double> edge_max_mm;        ///< by curvature: default a tenth of the label's box
-  double gradation = 1.3;                   ///< largest ratio of neighbouring edge lengths
-  double feature_deg = 70;                  ///< straight chains of edges that bend by more are ridges, from 8 pixels on
-  double sheet_angle_deg = 20;              ///< angles between sheets are kept above it ("not below, and not worse")
-  int threads = 0;                          ///< 0: all; the result does not depend on it
+  int smooth_passes = 5;  ///< HC-Laplacian; 0: no smoothing
+  double pixel_mm = 1;    ///< in-plane pixel of the sections
+  double gap_mm = 1;      ///< between sections; with the pixel it limits how far smoothing moves a vertex
+  bool remesh = true;     ///< false: smoothing only
+  std::optional<double> edge_length_mm;   ///< uniform edge length; unset: by curvature
+  std::map<Label, double> label_edge_mm;  ///< edge length per label; where labels meet the smaller counts
+  std::optional<double>
+      deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default half a pixel
+  std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels
+  std::optional<double> edge_max_mm;  ///< by curvature: default a tenth of the label's box
+  double gradation = 1.3;             ///< largest ratio of neighbouring edge lengths
+  double feature_deg = 70;      ///< straight chains of edges that bend by more are ridges, from 8 pixels on
+  double sheet_angle_deg = 20;  ///< angles between sheets are kept above it ("not below, and not worse")
+  int threads = 0;              ///< 0: all; the result does not depend on it
 };
 
 /// What the enhancement did.
 struct EnhanceCounts {
   std::size_t smoothed = 0, held_back = 0;  ///< vertices that moved; of them those held back by the guard
   std::size_t splits = 0, collapses = 0, flips = 0, relocations = 0;
-  std::size_t refused_contact = 0, refused_angle = 0, refused_clearance = 0;  ///< operations refused by the guard
+  std::size_t refused_contact = 0, refused_angle = 0,
+              refused_clearance = 0;  ///< operations refused by the guard
   std::size_t ridge_edges = 0;
 };
 
@@ -40,12 +42,13 @@ struct EnhanceResult {
   std::vector<std::string> warnings;
 };
 
-/// Smooths and remeshes a stitched complex for simulation [Wang et al. 2005, section 4; docs/enhancement.md]. Every label stays
-/// closed, none of its pieces is lost, its genus stays, and no two triangles meet beyond what they share: each change
-/// is tested exactly against the whole complex. Flat caps stay plane.
+/// Smooths and remeshes a stitched complex for simulation [Wang et al. 2005, section 4; docs/enhancement.md].
+/// Every label stays closed, none of its pieces is lost, its genus stays, and no two triangles meet beyond
+/// what they share: each change is tested exactly against the whole complex. Flat caps stay plane.
 /// @param stitched free of self-intersections, in stack coordinates (z is the stacking axis), mm.
-/// @throws Error(usage) for an edge length, deviation or gradation that makes no sense, or that asks for more than 50
-/// million triangles (with the estimate).
-EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options, Progress& progress);
+/// @throws Error(usage) for an edge length, deviation or gradation that makes no sense, or that asks for more
+/// than 50 million triangles (with the estimate).
+EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options,
+                              Progress& progress);
 
 }  // namespace stackmesh

@@ -11,7 +11,8 @@ namespace stackmesh {
 TriangleGrid::Box TriangleGrid::box_of(const Corners3& c, double margin) {
   Box b;
   const auto set = [&](int k, double x, double y, double z) {
-    const float low = static_cast<float>(std::min({x, y, z}) - margin), high = static_cast<float>(std::max({x, y, z}) + margin);
+    const float low = static_cast<float>(std::min({x, y, z}) - margin),
+                high = static_cast<float>(std::max({x, y, z}) + margin);
     b.low[k] = std::nextafter(low, -std::numeric_limits<float>::infinity());
     b.high[k] = std::nextafter(high, std::numeric_limits<float>::infinity());
   };
@@ -57,7 +58,8 @@ void TriangleGrid::remove(std::int32_t t) {
   boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}};  // covers no cell
 }
 
-Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg) : mesh_(mesh), cosine_limit_(std::cos(sheet_angle_deg * M_PI / 180)) {}
+Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg)
+    : mesh_(mesh), cosine_limit_(std::cos(sheet_angle_deg * M_PI / 180)) {}
 
 void Guard::rebuild(double cell_mm) {
   grid_.build(mesh_, mesh_.points, cell_mm);
@@ -79,7 +81,8 @@ double Guard::narrowest_before(const Change& c) const {
       for (std::int32_t o : mesh_.star[v[k]]) {
         if (o == r) continue;
         const SharedCorners h = shared_corners(v, mesh_.triangles[o].v);
-        if (h.count == 2) cosine = std::max(cosine, sheet_cosine(s, corners(mesh_.triangles[o].v, nullptr), h));
+        if (h.count == 2)
+          cosine = std::max(cosine, sheet_cosine(s, corners(mesh_.triangles[o].v, nullptr), h));
       }
   }
   return cosine;
@@ -96,8 +99,8 @@ double Guard::nearest_before(const Change& c, const std::array<std::int32_t, 3>&
   return best;
 }
 
-bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w,
-                         const Change& c) {
+bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
+                         const std::array<std::int32_t, 3>& w, const Change& c) {
   const SharedCorners h = shared_corners(v, w);
   const Corners3 t = corners(w, &c);
   if (h.count == 0) {
@@ -143,10 +146,12 @@ void Guard::update(const std::vector<std::int32_t>& touched) {
   known_ = std::max(known_, mesh_.triangles.size());
 }
 
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<Vec3>& before,
-                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
-                                         const MoveLimits& limits, int threads) {
-  const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree), clearance_mm = limits.clearance_mm;
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+                                         const std::vector<Vec3>& before, const std::vector<Vec3>& points,
+                                         const std::vector<std::int32_t>& suspects, const MoveLimits& limits,
+                                         int threads) {
+  const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree),
+               clearance_mm = limits.clearance_mm;
   const double corner = limits.corner_angle_deg * degree, turn = std::cos(limits.turn_deg * degree);
   const auto at = [&](const std::vector<Vec3>& p, std::int32_t t) {
     const auto& v = mesh.triangles[t].v;

@@ -18,8 +18,8 @@ class TriangleGrid {
   void insert(std::int32_t t, const Corners3& corners);
   void remove(std::int32_t t);
 
-  /// Calls visit(t) for every triangle whose box comes within `margin` of the corners' box; a triangle may come
-  /// twice, rarely. visit returns false to stop. @return false if stopped.
+  /// Calls visit(t) for every triangle whose box comes within `margin` of the corners' box; a triangle may
+  /// come twice, rarely. visit returns false to stop. @return false if stopped.
   template <class Visit>
   bool query(const Corners3& corners, double margin, Visit visit) const;
 
@@ -31,7 +31,8 @@ class TriangleGrid {
   std::int32_t cell(float x) const { return static_cast<std::int32_t>(std::floor(x * inverse_)); }
   std::size_t bucket(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return (static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^
-            static_cast<std::uint32_t>(k) * 83492791u) & mask_;
+            static_cast<std::uint32_t>(k) * 83492791u) &
+           mask_;
   }
   float inverse_ = 1;
   std::size_t mask_ = 0;
@@ -55,9 +56,9 @@ class Guard {
   Guard(ComplexMesh& mesh, double sheet_angle_deg);
   void rebuild(double cell_mm);
 
-  /// True when after the change no two triangles meet beyond what they share; no angle between sheets at an edge is
-  /// below the limit unless the triangles that go had a narrower one; and no triangle comes closer to another that
-  /// shares no corner with it than the clearance, unless those that go were as close.
+  /// True when after the change no two triangles meet beyond what they share; no angle between sheets at an
+  /// edge is below the limit unless the triangles that go had a narrower one; and no triangle comes closer to
+  /// another that shares no corner with it than the clearance, unless those that go were as close.
   bool allows(const Change& change);
 
   /// After a committed change: the grid follows. `touched`: triangles that died, moved, changed or are new.
@@ -67,8 +68,8 @@ class Guard {
 
  private:
   Corners3 corners(const std::array<std::int32_t, 3>& v, const Change* c) const;
-  bool pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w,
-                    const Change& c);
+  bool pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
+                    const std::array<std::int32_t, 3>& w, const Change& c);
   double narrowest_before(const Change& c) const;
   double nearest_before(const Change& c, const std::array<std::int32_t, 3>& w) const;
 
@@ -88,11 +89,13 @@ struct MoveLimits {
   double turn_deg = 0;          ///< a triangle's normal turns by no more; 0: any turn is allowed
 };
 
-/// Numbers of the triangles among `suspects` (and of those they meet) that cross or offend a limit with the corners
-/// at `points`, `before` being the places that are known to be good. Ascending; independent of the thread count.
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<Vec3>& before,
-                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
-                                         const MoveLimits& limits, int threads);
+/// Numbers of the triangles among `suspects` (and of those they meet) that cross or offend a limit with the
+/// corners at `points`, `before` being the places that are known to be good. Ascending; independent of the
+/// thread count.
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+                                         const std::vector<Vec3>& before, const std::vector<Vec3>& points,
+                                         const std::vector<std::int32_t>& suspects, const MoveLimits& limits,
+                                         int threads);
 
 /// Triangles that meet another beyond what they share, or have no area: 0 for a sound complex. Exact.
 std::size_t count_contacts(const ComplexMesh& mesh, int threads);

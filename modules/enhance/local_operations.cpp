@@ -6,8 +6,8 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kFold = 0.35;     // cosine: a triangle's normal against that of its old fan
-constexpr double kFlipBend = 0.82; // cosine: two triangles whose edge may be flipped
+constexpr double kFold = 0.35;      // cosine: a triangle's normal against that of its old fan
+constexpr double kFlipBend = 0.82;  // cosine: two triangles whose edge may be flipped
 const double kSqrt2 = std::sqrt(2.0);
 
 Vec3 unit(const Vec3& a) {
@@ -22,7 +22,8 @@ void LocalOperations::fan_normals(std::int32_t v) {
   mesh_.fans(v, fan_);
   normals_.assign(star.size(), Vec3{});
   std::vector<Vec3> sum(star.size());
-  for (std::size_t i = 0; i < star.size(); ++i) sum[fan_[i]] = sum[fan_[i]] + mesh_.area_vector(mesh_.triangles[star[i]].v);
+  for (std::size_t i = 0; i < star.size(); ++i)
+    sum[fan_[i]] = sum[fan_[i]] + mesh_.area_vector(mesh_.triangles[star[i]].v);
   for (std::size_t i = 0; i < star.size(); ++i) normals_[i] = unit(sum[fan_[i]]);
 }
 
@@ -50,7 +51,8 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   mesh_.split(a, b, p);
   size_.push_back(asked(a, b));
   touched_ = removed_;
-  for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t) touched_.push_back(t);
+  for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
+    touched_.push_back(t);
   guard.update(touched_);
   ++counts.splits;
   return true;
@@ -127,8 +129,10 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   const double after = std::min(angle(one), angle(two));
   bool better = after > before + gain_rad;
   if (!better && valence && after > std::max(0.45, 0.8 * before)) {
-    const int was = ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) + ideal_valence_error(d, 0);
-    const int is = ideal_valence_error(a, -1) + ideal_valence_error(b, -1) + ideal_valence_error(c, 1) + ideal_valence_error(d, 1);
+    const int was = ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) +
+                    ideal_valence_error(d, 0);
+    const int is = ideal_valence_error(a, -1) + ideal_valence_error(b, -1) + ideal_valence_error(c, 1) +
+                   ideal_valence_error(d, 1);
     better = is < was;
   }
   if (!better) return false;
@@ -136,7 +140,8 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   const Vec3 sum = unit(n0 + n1), m0 = unit(mesh_.area_vector(one)), m1 = unit(mesh_.area_vector(two));
   if (dot(m0, sum) < kFlipBend || dot(m1, sum) < kFlipBend) return false;
   // Where the four corners are far from a plane, the flip changes the surface.
-  const double out = std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
+  const double out =
+      std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
   if (out > o_.deviation_rel * asked(a, b)) return false;
   removed_ = {t[0], t[1]};
   added_ = {one, two};
@@ -157,7 +162,8 @@ Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
   const double reach = size_[v] + norm(p - here);
   Vec3 to = here;
   if (!mesh_.curve[v].empty()) {
-    const auto foot = reference_.nearest_on_curve(p, Reference::curve_key(mesh_, v, mesh_.curve[v][0]), reach);
+    const auto foot =
+        reference_.nearest_on_curve(p, Reference::curve_key(mesh_, v, mesh_.curve[v][0]), reach);
     if (foot) to = *foot;
   } else if (mesh_.flat[v]) {
     to = p;
@@ -169,7 +175,8 @@ Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
   return to;
 }
 
-double LocalOperations::smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const {
+double LocalOperations::smallest_round(std::int32_t v, const Vec3& at,
+                                       const std::vector<Vec3>& fan_normals) const {
   double worst = 10;
   const auto& star = mesh_.star[v];
   for (std::size_t i = 0; i < star.size(); ++i) {
@@ -207,7 +214,8 @@ bool LocalOperations::relocate(std::int32_t v) {
     const int k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
     const Vec3 &p = mesh_.points[t[(k + 1) % 3]], &q = mesh_.points[t[(k + 2) % 3]];
     const Vec3 e = unit(q - p), out = here - p - dot(here - p, e) * e, mean = 0.5 * (p + q);
-    for (const Vec3& d : {unit(out), unit(here - mean), unit(here - p), unit(here - q), unit(cross(e, normals_[worst]))})
+    for (const Vec3& d :
+         {unit(out), unit(here - mean), unit(here - p), unit(here - q), unit(cross(e, normals_[worst]))})
       for (double r : {-0.12, -0.06, 0.03, 0.06, 0.12}) {
         Vec3 to = here + (r * size_[v]) * d;
         if (mesh_.flat[v]) to.z = here.z;
@@ -238,7 +246,8 @@ bool LocalOperations::relocate(std::int32_t v) {
         offer(here + (r * l * std::cos(phi)) * u + (r * l * std::sin(phi)) * w);
       }
   }
-  std::stable_sort(places.begin(), places.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const auto& x, const auto& y) { return x.first > y.first; });
   if (places.size() > 4) places.resize(4);
   removed_ = mesh_.star[v];
   added_.clear();

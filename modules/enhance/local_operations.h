@@ -10,10 +10,12 @@
 
 namespace stackmesh {
 
-/// The single operations of the remesher: each judges shape, asks the guard, and commits or leaves all as it was.
+/// The single operations of the remesher: each judges shape, asks the guard, and commits or leaves all as it
+/// was.
 class LocalOperations {
  public:
-  LocalOperations(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options)
+  LocalOperations(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
+                  const RemeshOptions& options)
       : guard(mesh, options.sheet_angle_deg), mesh_(mesh), size_(size), reference_(reference), o_(options) {}
 
   double asked(std::int32_t a, std::int32_t b) const { return 0.5 * (size_[a] + size_[b]); }
@@ -26,11 +28,13 @@ class LocalOperations {
   bool split(std::int32_t a, std::int32_t b);
   /// `gone` into `kept`; no triangle gets an angle below `floor_rad` unless one of those that go was worse.
   bool collapse(std::int32_t gone, std::int32_t kept, double floor_rad);
-  /// Flips where it makes the smallest angle larger by `gain_rad`; with `valence`, also where neighbour counts gain.
+  /// Flips where it makes the smallest angle larger by `gain_rad`; with `valence`, also where neighbour
+  /// counts gain.
   bool flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence);
   /// Moves one vertex to the place near it that makes the smallest angle round it largest.
   bool relocate(std::int32_t v);
-  /// Where a vertex belongs when it is drawn to p: on its reference sheet or curve, on its cap; itself if it may not move.
+  /// Where a vertex belongs when it is drawn to p: on its reference sheet or curve, on its cap; itself if it
+  /// may not move.
   Vec3 drawn_to_reference(std::int32_t v, const Vec3& p) const;
 
   Guard guard;

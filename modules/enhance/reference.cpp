@@ -9,7 +9,8 @@ namespace stackmesh {
 
 std::size_t Reference::Cells::bucket(std::int32_t i, std::int32_t j, std::int32_t k) const {
   return (static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^
-          static_cast<std::uint32_t>(k) * 83492791u) & mask;
+          static_cast<std::uint32_t>(k) * 83492791u) &
+         mask;
 }
 
 template <class Corners>
@@ -33,7 +34,8 @@ void Reference::Cells::build(std::size_t count, double cell_mm, Corners corners)
   for (std::size_t b = 0; b < size; ++b) first[b + 1] += first[b];
   items.resize(first[size]);
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::size_t n = 0; n < count; ++n) each_cell(n, [&](std::size_t b) { items[next[b]++] = static_cast<std::int32_t>(n); });
+  for (std::size_t n = 0; n < count; ++n)
+    each_cell(n, [&](std::size_t b) { items[next[b]++] = static_cast<std::int32_t>(n); });
 }
 
 template <class Visit>
@@ -77,14 +79,17 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm
     const Vec3 c = (1 / 3.0) * (f.p[0] + f.p[1] + f.p[2]);
     const double r = std::max({norm(f.p[0] - c), norm(f.p[1] - c), norm(f.p[2] - c)});
     balls_.push_back({static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
-                      static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))), t.patch});
+                      static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))),
+                      t.patch});
     faces_.push_back(f);
   }
   for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
     for (std::int32_t b : mesh.curve[a])
       if (a < b) segments_.push_back({mesh.points[a], mesh.points[b], curve_key(mesh, a, b)});
   face_cells_.build(faces_.size(), cell_mm, [&](std::size_t n) { return faces_[n].p; });
-  segment_cells_.build(segments_.size(), cell_mm, [&](std::size_t n) { return std::array<Vec3, 2>{segments_[n].a, segments_[n].b}; });
+  segment_cells_.build(segments_.size(), cell_mm, [&](std::size_t n) {
+    return std::array<Vec3, 2>{segments_[n].a, segments_[n].b};
+  });
 }
 
 std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm) const {

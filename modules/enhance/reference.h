@@ -9,9 +9,9 @@
 
 namespace stackmesh {
 
-/// The surface that a remeshed complex stands for: a copy of its triangles and curves, searched by place and patch.
-/// Between the vertices it bulges to the planes of their normals (Phong tessellation), which makes it smooth to the eye
-/// and nearly G1.
+/// The surface that a remeshed complex stands for: a copy of its triangles and curves, searched by place and
+/// patch. Between the vertices it bulges to the planes of their normals (Phong tessellation), which makes it
+/// smooth to the eye and nearly G1.
 class Reference {
  public:
   Reference(const ComplexMesh& mesh, double cell_mm);

@@ -15,7 +15,8 @@ const double kSqrt2 = std::sqrt(2.0);
 
 class Remesher {
  public:
-  Remesher(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options)
+  Remesher(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
+           const RemeshOptions& options)
       : mesh_(mesh), size_(size), reference_(reference), o_(options), ops_(mesh, size, reference, options) {}
 
   RemeshCounts run(Progress& progress) {
@@ -81,10 +82,12 @@ class Remesher {
       std::size_t done = 0;
       for (const auto& [r, e] : ranked([](double x) { return x < 1 / kSqrt2; })) {
         const auto [a, b] = e;
-        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= 1 / kSqrt2) continue;
+        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= 1 / kSqrt2)
+          continue;
         // The one with fewer triangles goes first: it changes less.
         const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();
-        done += ops_.collapse(a_first ? a : b, a_first ? b : a, floor_rad) || ops_.collapse(a_first ? b : a, a_first ? a : b, floor_rad);
+        done += ops_.collapse(a_first ? a : b, a_first ? b : a, floor_rad) ||
+                ops_.collapse(a_first ? b : a, a_first ? a : b, floor_rad);
       }
       if (done * 500 < mesh_.points.size()) break;
     }
@@ -105,7 +108,8 @@ class Remesher {
     constexpr std::size_t kChunk = 512;
     parallel_for((to.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t v = chunk * kChunk; v < std::min(to.size(), (chunk + 1) * kChunk); ++v)
-        if (!mesh_.star[v].empty() && !mesh_.is_fixed(static_cast<std::int32_t>(v))) to[v] = target(static_cast<std::int32_t>(v));
+        if (!mesh_.star[v].empty() && !mesh_.is_fixed(static_cast<std::int32_t>(v)))
+          to[v] = target(static_cast<std::int32_t>(v));
     });
     ops_.counts.relocations += move_guarded(mesh_, to, keep, o_.threads).moved;
   }
@@ -151,11 +155,13 @@ class Remesher {
       });
   }
 
-  /// A step of a least-squares fit: vertices move along the normals by the mean distance to the reference of samples on
-  /// their triangles, weighted by the vertex's share in the sample.
+  /// A step of a least-squares fit: vertices move along the normals by the mean distance to the reference of
+  /// samples on their triangles, weighted by the vertex's share in the sample.
   void fit_reference() {
-    static constexpr double kAt[3][3] = {{2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
-    std::vector<std::array<double, 3>> off(mesh_.triangles.size(), {0, 0, 0});  // per corner: weighted distance
+    static constexpr double kAt[3][3] = {
+        {2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
+    std::vector<std::array<double, 3>> off(mesh_.triangles.size(),
+                                           {0, 0, 0});  // per corner: weighted distance
     constexpr std::size_t kChunk = 512;
     parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(off.size(), (chunk + 1) * kChunk); ++t) {
@@ -166,7 +172,8 @@ class Remesher {
         if (!(l > 0)) continue;
         std::array<double, 3> sum = {0, 0, 0}, weight = {0, 0, 0};
         for (const auto& w : kAt) {
-          const Vec3 p = w[0] * mesh_.points[m.v[0]] + w[1] * mesh_.points[m.v[1]] + w[2] * mesh_.points[m.v[2]];
+          const Vec3 p =
+              w[0] * mesh_.points[m.v[0]] + w[1] * mesh_.points[m.v[1]] + w[2] * mesh_.points[m.v[2]];
           const auto foot = reference_.nearest(p, m.patch, reach);
           if (!foot) continue;
           const double d = dot(foot->point - p, (1 / l) * a);
@@ -249,8 +256,8 @@ class Remesher {
 
 }  // namespace
 
-RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options,
-                    Progress& progress) {
+RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
+                    const RemeshOptions& options, Progress& progress) {
   return Remesher(mesh, size, reference, options).run(progress);
 }
 

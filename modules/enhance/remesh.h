@@ -9,13 +9,13 @@
 namespace stackmesh {
 
 struct RemeshOptions {
-  int rounds = 4;                ///< of split, collapse, flip, relocate
-  int fit_passes = 3;            ///< of the least-squares fit to the reference
-  int finish_sweeps = 4;         ///< over the worst triangles
-  double good_angle_deg = 32;    ///< triangles below are worked on at the end
-  double sheet_angle_deg = 20;   ///< angles between sheets are kept above ("not below, and not worse")
-  double clearance_rel = 0.1;    ///< of the edge length: sheets come no closer
-  double deviation_rel = 0.15;   ///< of the edge length: how far a collapse or flip may leave the surface
+  int rounds = 4;               ///< of split, collapse, flip, relocate
+  int fit_passes = 3;           ///< of the least-squares fit to the reference
+  int finish_sweeps = 4;        ///< over the worst triangles
+  double good_angle_deg = 32;   ///< triangles below are worked on at the end
+  double sheet_angle_deg = 20;  ///< angles between sheets are kept above ("not below, and not worse")
+  double clearance_rel = 0.1;   ///< of the edge length: sheets come no closer
+  double deviation_rel = 0.15;  ///< of the edge length: how far a collapse or flip may leave the surface
   int threads = 0;
 };
 
@@ -24,10 +24,11 @@ struct RemeshCounts {
   std::size_t refused_contact = 0, refused_angle = 0, refused_clearance = 0;  ///< by the guard
 };
 
-/// Remeshes to the edge length asked for at every vertex [Frey and Borouchaki 1998]: edges above sqrt 2 of it are split, below
-/// 1 / sqrt 2 collapsed, with flips and relocation on the reference after each; then the worst triangles are worked on.
-/// Every operation is tested exactly against the whole complex before it is committed. `size` follows the vertices.
-RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference, const RemeshOptions& options,
-                    Progress& progress);
+/// Remeshes to the edge length asked for at every vertex [Frey and Borouchaki 1998]: edges above sqrt 2 of it
+/// are split, below 1 / sqrt 2 collapsed, with flips and relocation on the reference after each; then the
+/// worst triangles are worked on. Every operation is tested exactly against the whole complex before it is
+/// committed. `size` follows the vertices.
+RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
+                    const RemeshOptions& options, Progress& progress);
 
 }  // namespace stackmesh

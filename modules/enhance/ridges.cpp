@@ -8,9 +8,10 @@
 namespace stackmesh {
 namespace {
 
-/// Mean normal of the triangles within `reach` of the edge a b that are connected to `start` and lie on its side of
-/// the edge: over treads and risers of a staircase alike.
-Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::int32_t start, std::int32_t other, double reach) {
+/// Mean normal of the triangles within `reach` of the edge a b that are connected to `start` and lie on its
+/// side of the edge: over treads and risers of a staircase alike.
+Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::int32_t start,
+                 std::int32_t other, double reach) {
   const Vec3 middle = 0.5 * (mesh.points[a] + mesh.points[b]), along = mesh.points[b] - mesh.points[a];
   const auto centre = [&](std::int32_t t) {
     const auto& v = mesh.triangles[t].v;
@@ -25,8 +26,8 @@ Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::i
     for (std::int32_t v : mesh.triangles[list[i]].v)
       for (std::int32_t t : mesh.star[v]) {
         const Vec3 d = centre(t) - middle;
-        if (mesh.triangles[t].patch == mesh.triangles[start].patch && dot(d, d) < reach * reach && dot(d, across) > 0 &&
-            std::find(list.begin(), list.end(), t) == list.end())
+        if (mesh.triangles[t].patch == mesh.triangles[start].patch && dot(d, d) < reach * reach &&
+            dot(d, across) > 0 && std::find(list.begin(), list.end(), t) == list.end())
           list.push_back(t);
       }
   }
@@ -36,13 +37,15 @@ Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::i
 }  // namespace
 
 std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm) {
-  const double limit = std::cos(feature_deg * M_PI / 180), wide_limit = std::cos(0.75 * feature_deg * M_PI / 180);
+  const double limit = std::cos(feature_deg * M_PI / 180),
+               wide_limit = std::cos(0.75 * feature_deg * M_PI / 180);
   std::map<std::int32_t, std::vector<std::int32_t>> sharp;
   std::vector<std::int32_t> around;
   for (const auto& [a, b] : mesh.edges()) {
     if (mesh.is_curve_edge(a, b)) continue;
     mesh.edge_triangles(a, b, around);
-    const Vec3 n = mesh.area_vector(mesh.triangles[around[0]].v), m = mesh.area_vector(mesh.triangles[around[1]].v);
+    const Vec3 n = mesh.area_vector(mesh.triangles[around[0]].v),
+               m = mesh.area_vector(mesh.triangles[around[1]].v);
     if (dot(n, m) > limit * norm(n) * norm(m)) continue;
     const Vec3 left = wide_normal(mesh, a, b, around[0], around[1], 0.375 * length_mm);
     const Vec3 right = wide_normal(mesh, a, b, around[1], around[0], 0.375 * length_mm);

@@ -16,7 +16,8 @@ constexpr std::size_t kChunk = 1024;
 template <class Body>
 void for_range(std::size_t count, int threads, Body body) {
   parallel_for((count + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
-    for (std::size_t v = chunk * kChunk; v < std::min(count, (chunk + 1) * kChunk); ++v) body(static_cast<std::int32_t>(v));
+    for (std::size_t v = chunk * kChunk; v < std::min(count, (chunk + 1) * kChunk); ++v)
+      body(static_cast<std::int32_t>(v));
   });
 }
 
@@ -57,7 +58,8 @@ class Sizing {
     });
   }
 
-  /// From normals averaged over a few rings, so that what is left of the voxels' steps does not count as curvature.
+  /// From normals averaged over a few rings, so that what is left of the voxels' steps does not count as
+  /// curvature.
   void curvature() {
     const std::size_t n = mesh_.points.size();
     std::vector<Vec3> normal(n), next(n);
@@ -85,7 +87,8 @@ class Sizing {
     for_range(n, o_.threads, [&](std::int32_t v) {
       if (!mesh_.curve[v].empty()) {
         if (mesh_.curve[v].size() != 2) return;
-        const Vec3 a = mesh_.points[mesh_.curve[v][0]] - mesh_.points[v], b = mesh_.points[v] - mesh_.points[mesh_.curve[v][1]];
+        const Vec3 a = mesh_.points[mesh_.curve[v][0]] - mesh_.points[v],
+                   b = mesh_.points[v] - mesh_.points[mesh_.curve[v][1]];
         const double l = 0.5 * (norm(a) + norm(b));
         if (l > 0) bend[v] = 0.5 * norm(unit(a) - unit(b)) / l;  // half: a curve keeps some of its steps
         return;
@@ -110,8 +113,10 @@ class Sizing {
     });
     for_range(n, o_.threads, [&](std::int32_t v) {
       if (fixed_[v]) return;
-      const double r = smooth[v] > 0 ? 1 / smooth[v] : 1e300, d = std::min(o_.deviation_mm, r), most = size_[v];
-      if (r < 1e6 * most) size_[v] = std::max(std::min(2 * std::sqrt(d * (2 * r - d)), most), std::min(o_.edge_min_mm, most));
+      const double r = smooth[v] > 0 ? 1 / smooth[v] : 1e300, d = std::min(o_.deviation_mm, r),
+                   most = size_[v];
+      if (r < 1e6 * most)
+        size_[v] = std::max(std::min(2 * std::sqrt(d * (2 * r - d)), most), std::min(o_.edge_min_mm, most));
     });
   }
 
@@ -124,7 +129,8 @@ class Sizing {
         ++count;
       }
     if (count == 0) return;
-    const std::vector<double> thin = wall_thickness(mesh_, o_.edges_across * mean / static_cast<double>(count), o_.threads);
+    const std::vector<double> thin =
+        wall_thickness(mesh_, o_.edges_across * mean / static_cast<double>(count), o_.threads);
     const std::vector<double> shell = shell_sizes(mesh_);
     for_range(size_.size(), o_.threads, [&](std::int32_t v) {
       size_[v] = std::clamp(thin[v] / o_.edges_across, std::min(o_.edge_min_mm, size_[v]), size_[v]);
@@ -214,7 +220,8 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
     mesh.edge_triangles(a, b, around);
     for (std::size_t i = 0; i < 2 * around.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
-        const std::int32_t s = 2 * around[i / 2] + static_cast<std::int32_t>(i % 2), t = 2 * around[j / 2] + static_cast<std::int32_t>(j % 2);
+        const std::int32_t s = 2 * around[i / 2] + static_cast<std::int32_t>(i % 2),
+                           t = 2 * around[j / 2] + static_cast<std::int32_t>(j % 2);
         if (label(s) == label(t)) parent[std::max(root(s), root(t))] = std::min(root(s), root(t));
       }
   }
@@ -239,6 +246,8 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
   return out;
 }
 
-std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options) { return Sizing(mesh, options).run(); }
+std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options) {
+  return Sizing(mesh, options).run();
+}
 
 }  // namespace stackmesh

@@ -12,14 +12,14 @@ struct SizingOptions {
   std::map<Label, double> label_edge_mm;  ///< per label; where labels meet the smaller counts
   double deviation_mm = 0.5;              ///< by curvature: largest distance of an edge from the surface
   double edge_min_mm = 1, edge_max_mm = 10;
-  std::map<Label, double> label_max_mm;   ///< by curvature: largest length on a label, instead of edge_max_mm
-  double gradation = 1.3;                 ///< lengths of neighbouring edges differ by at most this factor
-  double edges_across = 2;                ///< edges that should fit across a wall, as far as edge_min allows
+  std::map<Label, double> label_max_mm;  ///< by curvature: largest length on a label, instead of edge_max_mm
+  double gradation = 1.3;                ///< lengths of neighbouring edges differ by at most this factor
+  double edges_across = 2;               ///< edges that should fit across a wall, as far as edge_min allows
   int threads = 0;
 };
 
-/// For every vertex the distance across the thinnest label or gap between sheets of a label there, by rays from both
-/// sides; no more than reach_mm, infinite where nothing is hit.
+/// For every vertex the distance across the thinnest label or gap between sheets of a label there, by rays
+/// from both sides; no more than reach_mm, infinite where nothing is hit.
 std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int threads);
 
 /// For every vertex the cube root of the volume of the smallest closed shell of a label that it is on, mm.

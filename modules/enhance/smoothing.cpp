@@ -56,7 +56,9 @@ std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOption
   const auto limited = [&](std::size_t v, Vec3 to) {
     Vec3 d = to - origin[v];
     if (mesh.flat[v]) d.z = 0;
-    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) + d.z * d.z / (o.limit_z_mm * o.limit_z_mm)) / (o.share.empty() ? 1.0 : std::max(1e-6f, o.share[v]));
+    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) +
+                               d.z * d.z / (o.limit_z_mm * o.limit_z_mm)) /
+                     (o.share.empty() ? 1.0 : std::max(1e-6f, o.share[v]));
     return s > 1 ? origin[v] + (1 / s) * d : origin[v] + d;
   };
   const bool taubin = o.taubin_lambda != 0;
@@ -118,8 +120,7 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
   std::vector<std::int32_t> changed;
   for (;;) {
     ++result.rounds;
-    const std::vector<std::int32_t> bad =
-        find_offenders(mesh, grid, before, now, suspects, keep, threads);
+    const std::vector<std::int32_t> bad = find_offenders(mesh, grid, before, now, suspects, keep, threads);
     changed.clear();
     for (std::int32_t t : bad)
       for (std::int32_t v : mesh.triangles[t].v)
@@ -134,7 +135,8 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
         continue;
       }
       share[v] = share[v] > 0.2f ? share[v] / 2 : 0;
-      now[v] = share[v] > 0 ? before[v] + static_cast<double>(share[v]) * (targets[v] - before[v]) : before[v];
+      now[v] =
+          share[v] > 0 ? before[v] + static_cast<double>(share[v]) * (targets[v] - before[v]) : before[v];
       suspects.insert(suspects.end(), mesh.star[v].begin(), mesh.star[v].end());
     }
     std::sort(suspects.begin(), suspects.end());

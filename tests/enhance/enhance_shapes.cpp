@@ -12,7 +12,8 @@ void add_box(InterfaceComplex& c, Vec3 low, Vec3 high, int n, Label label) {
   const auto point = [&](std::array<int, 3> g) {
     const auto [it, fresh] = numbers.insert({g, static_cast<std::int32_t>(c.points.size())});
     if (fresh)
-      c.points.push_back({low.x + (high.x - low.x) * g[0] / n, low.y + (high.y - low.y) * g[1] / n, low.z + (high.z - low.z) * g[2] / n});
+      c.points.push_back({low.x + (high.x - low.x) * g[0] / n, low.y + (high.y - low.y) * g[1] / n,
+                          low.z + (high.z - low.z) * g[2] / n});
     return it->second;
   };
   for (int axis = 0; axis < 3; ++axis)
@@ -28,7 +29,8 @@ void add_box(InterfaceComplex& c, Vec3 low, Vec3 high, int n, Label label) {
             q[k] = point(g);
           }
           if (side == 0) std::swap(q[1], q[3]);
-          for (const auto& v : {std::array<std::int32_t, 3>{q[0], q[1], q[2]}, {q[0], q[2], q[3]}}) c.triangles.push_back({v, label, 0});
+          for (const auto& v : {std::array<std::int32_t, 3>{q[0], q[1], q[2]}, {q[0], q[2], q[3]}})
+            c.triangles.push_back({v, label, 0});
         }
 }
 
@@ -50,9 +52,12 @@ InterfaceComplex two_plates(double side, double thickness, double gap) {
 InterfaceComplex ball(double radius, int levels) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   InterfaceComplex c;
-  c.points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::array<std::int32_t, 3>> faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                                    {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  c.points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+              {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<std::array<std::int32_t, 3>> faces = {
+      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middle;
     std::vector<std::array<std::int32_t, 3>> next;

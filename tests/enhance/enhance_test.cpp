@@ -17,7 +17,8 @@ EnhanceOptions options_of(const Stack& stack) {
   EnhanceOptions o;
   o.pixel_mm = stack.pixel_mm;
   const std::size_t n = stack.sections.size();
-  o.gap_mm = n > 1 ? (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(n - 1) : stack.pixel_mm;
+  o.gap_mm = n > 1 ? (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(n - 1)
+                   : stack.pixel_mm;
   return o;
 }
 
@@ -43,10 +44,14 @@ std::string broken(const InterfaceComplex& before, const EnhanceResult& after) {
     const LabelSurface &a = was.labels[i], &b = is.labels[i];
     const std::string name = "label " + std::to_string(a.label);
     if (!b.closed) out += name + " is open; ";
-    if (a.components != b.components) out += name + " went from " + std::to_string(a.components) + " to " + std::to_string(b.components) + " pieces; ";
+    if (a.components != b.components)
+      out += name + " went from " + std::to_string(a.components) + " to " + std::to_string(b.components) +
+             " pieces; ";
     if (a.euler != b.euler) out += name + " changed its genus; ";
-    if (std::abs(b.volume_mm3 / a.volume_mm3 - 1) > 0.05 && !is_named(after.warnings, a.label) && after.level == "enhanced")
-      out += name + " changed its volume by " + std::to_string(b.volume_mm3 / a.volume_mm3 - 1) + " without a warning; ";
+    if (std::abs(b.volume_mm3 / a.volume_mm3 - 1) > 0.05 && !is_named(after.warnings, a.label) &&
+        after.level == "enhanced")
+      out += name + " changed its volume by " + std::to_string(b.volume_mm3 / a.volume_mm3 - 1) +
+             " without a warning; ";
   }
   return out;
 }
@@ -79,20 +84,24 @@ TEST(EnhanceComplex, GivesTheSameBytesWhateverTheThreadCount) {
 }
 
 TEST(EnhanceComplex, OneVoxelStaysAsASmallClosedShape) {
-  const Stitched s = stitch_volume(volume_of({{"0000", "0000", "0000"}, {"0000", "0100", "0000"}, {"0000", "0000", "0000"}}), 0.5);
+  const Stitched s = stitch_volume(
+      volume_of({{"0000", "0000", "0000"}, {"0000", "0100", "0000"}, {"0000", "0000", "0000"}}), 0.5);
   for (double edge : {0.5, 2.0, 50.0}) {
     EnhanceOptions o = options_of(s.stack);
     o.edge_length_mm = edge;
     const EnhanceResult r = enhance(s.complex(), o);
     EXPECT_EQ(broken(s.complex(), r), "") << edge;
-    EXPECT_GT(surface_of(check_surface(r.complex), 1).volume_mm3, 0.7 * surface_of(check_surface(s.complex()), 1).volume_mm3) << edge;
+    EXPECT_GT(surface_of(check_surface(r.complex), 1).volume_mm3,
+              0.7 * surface_of(check_surface(s.complex()), 1).volume_mm3)
+        << edge;
   }
 }
 
 TEST(EnhanceComplex, TouchingLabelsStayConforming) {
   const Stitched s = stitch_volume(volume_of({{"000000", "011220", "011220", "011220", "000000"},
                                               {"000000", "011220", "011220", "013320", "000000"},
-                                              {"000000", "011220", "013320", "013320", "000000"}}), 0.5);
+                                              {"000000", "011220", "013320", "013320", "000000"}}),
+                                   0.5);
   for (double edge : {0.6, 1.5}) {
     EnhanceOptions o = options_of(s.stack);
     o.edge_length_mm = edge;
@@ -112,7 +121,8 @@ TEST(EnhanceComplex, AThinGapIsNotClosed) {
 }
 
 TEST(EnhanceComplex, FlatCapsStayPlane) {
-  const std::vector<const char*> disc = {"00000000", "00111100", "01111110", "01111110", "01111110", "01111110", "00111100", "00000000"};
+  const std::vector<const char*> disc = {"00000000", "00111100", "01111110", "01111110",
+                                         "01111110", "01111110", "00111100", "00000000"};
   StitchOptions flat;
   flat.caps = Caps::flat;
   const Stitched s = stitch_volume(volume_of({disc, disc, disc, disc}), 0.5, flat);
@@ -152,7 +162,8 @@ TEST(EnhanceComplex, ACubeKeepsItsVolumeAndCorners) {
   for (int corner = 0; corner < 8; ++corner) {
     double nearest = 1e9;
     for (const Vec3& p : r.complex.points)
-      nearest = std::min(nearest, norm(p - Vec3{corner & 1 ? 10.0 : 0.0, corner & 2 ? 10.0 : 0.0, corner & 4 ? 10.0 : 0.0}));
+      nearest = std::min(
+          nearest, norm(p - Vec3{corner & 1 ? 10.0 : 0.0, corner & 2 ? 10.0 : 0.0, corner & 4 ? 10.0 : 0.0}));
     EXPECT_LT(nearest, 0.4) << corner;
   }
 }
