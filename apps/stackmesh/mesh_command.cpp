@@ -9,7 +9,7 @@
 namespace stackmesh::app {
 namespace {
 
-/// Options of the surface enhancement, which is not built yet: they are checked, and named in a warning.
+/// Options of virtual sections and of the surface enhancement.
 struct EnhanceArguments {
   std::string edge_length, interpolate = "auto";
   double deviation = 0, edge_min = 0, edge_max = 0, gradation = 1.3;
@@ -96,21 +96,30 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.strict = a.strict;
 
   const EnhanceArguments& e = a.enhance;
-  check_interpolate(e.interpolate);
-  if (!e.edge_length.empty()) check_edge_lengths(e.edge_length);
-  if (!e.off || e.interpolate != "0")
-    o.notes.push_back("surface enhancement and virtual sections are not built yet: this run is that of --no-enhance --interpolate 0");
-  for (const char* name : {"--deviation", "--edge-length", "--edge-min", "--edge-max", "--gradation", "--smooth", "--target-tets"})
-    if (const CLI::Option* option = command.get_option_no_throw(name); option != nullptr && option->count() > 0)
-      o.notes.push_back(std::string(name) + " has no effect before enhancement is built");
+  o.virtual_sections = parse_interpolate(e.interpolate);
+  o.enhance = !e.off;
+  if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 1000000;
+  if (!e.edge_length.empty()) o.label_edges_text = parse_edge_lengths(e.edge_length, o.enhancement.edge_length_mm);
+  if (e.deviation > 0) o.enhancement.deviation_mm = e.deviation;
+  if (e.edge_min > 0) o.enhancement.edge_min_mm = e.edge_min;
+  if (e.edge_max > 0) o.enhancement.edge_max_mm = e.edge_max;
+  o.enhancement.gradation = e.gradation;
+  o.enhancement.smooth_passes = e.smooth;
+  if (command.get_option("--target-tets")->count() > 0) o.notes.push_back("--target-tets has no effect yet: the size is what the other options ask for");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
                     {"simplify_px", text_of(a.contours.simplify_px)},
                     {"snap_mm", text_of(a.snap_mm)},
                     {"caps", a.caps},
-                    {"interpolate", "0"},
-                    {"enhance", "off"},
+                    {"interpolate", e.interpolate},
+                    {"enhance", e.off ? "off" : "on"},
+                    {"smooth", std::to_string(e.smooth)},
+                    {"edge_length_mm", e.edge_length.empty() ? "unset" : e.edge_length},
+                    {"deviation_mm", e.deviation > 0 ? text_of(e.deviation) : "half a pixel"},
+                    {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},
+                    {"edge_max_mm", e.edge_max > 0 ? text_of(e.edge_max) : "default"},
+                    {"gradation", text_of(e.gradation)},
                     {"space", a.space},
                     {"threads", a.contours.threads > 0 ? std::to_string(a.contours.threads) : "all"},
                     {"strict", a.strict ? "on" : "off"}};

@@ -108,22 +108,28 @@ double parse_number(const std::string& text, const std::string& option) {
   return *value;
 }
 
-void check_edge_lengths(const std::string& text) {
+std::vector<std::pair<std::string, double>> parse_edge_lengths(const std::string& text, std::optional<double>& all) {
+  std::vector<std::pair<std::string, double>> per_label;
   for (const std::string& item : split(text, ',')) {
     const std::size_t at = item.find('=');
-    const bool per_label = text.find('=') != std::string::npos;
-    if (per_label != (at != std::string::npos) || at == 0 || (!per_label && item != text))
+    const bool by_label = text.find('=') != std::string::npos;
+    if (by_label != (at != std::string::npos) || at == 0 || (!by_label && item != text))
       fail_usage("'" + text + "' is no edge length", "--edge-length", "write --edge-length 2.0, or per label 5=2.0,9=1.0, in mm");
-    if (parse_number(per_label ? item.substr(at + 1) : item, "--edge-length") <= 0)
+    const double edge_mm = parse_number(by_label ? item.substr(at + 1) : item, "--edge-length");
+    if (edge_mm <= 0)
       fail_usage("'" + item + "' is not above 0", "--edge-length", "write --edge-length 2.0, or per label 5=2.0,9=1.0, in mm");
+    if (by_label) per_label.emplace_back(item.substr(0, at), edge_mm);
+    else all = edge_mm;
   }
+  return per_label;
 }
 
-void check_interpolate(const std::string& text) {
-  if (text == "auto") return;
+std::optional<int> parse_interpolate(const std::string& text) {
+  if (text == "auto") return std::nullopt;
   const bool digits = !text.empty() && text.size() <= 4 && text.find_first_not_of("0123456789") == std::string::npos;
   if (!digits || std::stoi(text) > 1000)
     fail_usage("'" + text + "' is not auto or a whole number from 0 to 1000", "--interpolate", "see --help");
+  return std::stoi(text);
 }
 
 void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label) {

@@ -45,11 +45,11 @@ CLI::Validator number_in(double low, double high, const std::string& what);
 /// A finite number, or "not a number" as Error(usage) naming the option.
 double parse_number(const std::string& text, const std::string& option);
 
-/// "2.0" or per label "5=2.0,9=1.0"; all above 0. @throws Error(usage)
-void check_edge_lengths(const std::string& text);
+/// "2.0" sets `all`; "5=2.0,9=1.0" is returned per label; mm, all above 0. @throws Error(usage)
+std::vector<std::pair<std::string, double>> parse_edge_lengths(const std::string& text, std::optional<double>& all);
 
-/// "auto" or a whole number from 0 to 1000. @throws Error(usage)
-void check_interpolate(const std::string& text);
+/// "auto" (no value) or a whole number from 0 to 1000. @throws Error(usage)
+std::optional<int> parse_interpolate(const std::string& text);
 
 /// "auto", "flat", "round", or per label "5=flat,9=round". @throws Error(usage)
 void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label);

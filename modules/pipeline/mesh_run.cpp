@@ -1,9 +1,11 @@
 #include "pipeline/mesh_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
+#include "interpolate/virtual_slices.h"
 #include "pipeline/stage_clock.h"
 
 namespace stackmesh {
@@ -26,7 +28,8 @@ class MeshRun {
     clock_.run("read", [&] { read(); });
     clock_.run("contours", [&] { make_sections(); });
     clock_.run("stitch", [&] { stitch(); });
-    clock_.run("validate", [&] { judge_surface(); });
+    clock_.run("validate", [&] { judge_stitched(); });
+    if (o_.enhance && is_sound() && !is_too_large()) enhance();
     if (o_.target == Target::volume && is_sound()) clock_.run("volume", [&] { fill(); });
     clock_.run("validate", [&] { judge_rest(); });
     const std::string refusal = verdict();
@@ -89,7 +92,7 @@ class MeshRun {
       for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
       report_.contours.vertices_traced = report_.contours.vertices;
     } else {
-      ContourResult c = extract_sections(*input_.volume, o_.contours, progress_);
+      ContourResult c = extract_with_virtual_sections();
       stack_ = std::move(c.stack);
       axis_ = c.axis;
       report_.contours.loops = c.loops;
@@ -98,7 +101,22 @@ class MeshRun {
       if (!wants_fidelity()) input_.volume->voxels = {};  // no one asks for them any more
     }
     report_.input.axis = std::string(1, "xyz"[axis_]);
-    report_.input.sections = stack_.sections.size();
+    for (const Section& s : stack_.sections) report_.input.sections += s.interpolated ? 0 : 1;
+  }
+
+  ContourResult extract_with_virtual_sections() {
+    const LabelVolume& volume = *input_.volume;
+    const int axis = stacking_axis(volume, o_.contours.axis);
+    InterpolateOptions options;
+    options.per_gap = o_.virtual_sections;
+    options.threads = o_.threads;
+    const int per_gap = virtual_slices_per_gap(volume, axis, options);
+    if (per_gap == 0) return extract_sections(volume, o_.contours, progress_);
+    const InterpolatedVolume dense = add_virtual_slices(volume, axis, options);
+    ContourOptions contours = o_.contours;
+    contours.axis = std::array{StackAxis::x, StackAxis::y, StackAxis::z}[axis];  // the dense volume's spacing would choose anew
+    contours.virtual_per_gap = dense.per_gap;
+    return extract_sections(dense.volume, contours, progress_);
   }
 
   void stitch() {
@@ -121,7 +139,53 @@ class MeshRun {
       row.cap_low = it->second.low;
       row.cap_high = it->second.high;
     }
+    pixel_mm_ = stack_.pixel_mm;
+    const std::size_t n = stack_.sections.size();
+    gap_mm_ = n > 1 ? (stack_.sections[n - 1].z_mm - stack_.sections[0].z_mm) / static_cast<double>(n - 1) : pixel_mm_;
     stack_ = Stack();
+  }
+
+  bool is_too_large() {
+    if (!o_.enhance_up_to || surface_.triangles.size() <= *o_.enhance_up_to) return false;
+    lost_detail_ = "the surface is stitched, not enhanced";
+    warn("the stitched surface has " + std::to_string(surface_.triangles.size()) +
+         " triangles, more than are enhanced unasked (it would take minutes): it is kept as stitched; ask for enhancement with --edge-length "
+         "or --deviation, or reduce it with --interpolate or --simplify");
+    return true;
+  }
+
+  /// The stitched surface is kept until the enhanced one has passed the same exact checks.
+  void enhance() {
+    EnhanceOptions options = o_.enhancement;
+    options.pixel_mm = pixel_mm_;
+    options.gap_mm = gap_mm_;
+    options.threads = o_.threads;
+    std::vector<LabelInfo> known = {{0, ""}};
+    known.insert(known.end(), input_.labels.begin(), input_.labels.end());
+    for (const auto& [text, edge_mm] : o_.label_edges_text)
+      for (std::size_t k : resolve_labels(known, text)) options.label_edge_mm[known[k].number] = edge_mm;
+    InterfaceComplex stitched = std::move(surface_);
+    const SurfaceCheck before = *report_.surface;
+    clock_.run("enhance", [&] {
+      EnhanceResult result = enhance_complex(stitched, options, progress_);
+      for (const std::string& w : result.warnings) warn(w);
+      surface_ = std::move(result.complex);
+      report_.surface_level = result.level;
+    });
+    clock_.run("validate", [&] { judge_surface(); });
+    if (!is_sound() || report_.surface->labels.size() != before.labels.size()) {
+      warn("the enhanced surface did not pass the exact checks (" + std::to_string(report_.surface->open_edges) + " open edges, " +
+           std::to_string(report_.surface->self_intersections) + " self-intersections): the stitched surface is used");
+      surface_ = std::move(stitched);
+      report_.surface_level = "stitched";
+      clock_.run("validate", [&] { judge_surface(); });
+    }
+    if (report_.surface_level != "enhanced" && lost_detail_.empty()) lost_detail_ = "the surface is " + report_.surface_level + ", not enhanced";
+    for (const LabelSurface& b : before.labels)
+      for (const LabelSurface& a : report_.surface->labels)
+        if (a.label == b.label && (a.euler != b.euler || a.components != b.components))
+          warn("label " + std::to_string(a.label) + ": enhancement changed its Euler number from " + std::to_string(b.euler) + " to " +
+               std::to_string(a.euler) + " and its pieces from " + std::to_string(b.components) + " to " + std::to_string(a.components));
   }
 
   bool is_sound() const { return report_.surface->open_edges == 0 && report_.surface->self_intersections == 0; }
@@ -130,6 +194,10 @@ class MeshRun {
   void fill() {
     FillOptions options = o_.fill;
     options.known_sound = true;
+    if (report_.surface_level == "enhanced") {  // good triangles: inner tetrahedra may be asked for quality
+      if (!options.radius_edge) options.radius_edge = 1.4;
+      if (!options.dihedral_deg) options.dihedral_deg = 12;
+    }
     FillResult result = fill_volume(surface_, options);
     if (!result.fallback.empty()) warn("the volume mesher fell back: " + result.fallback + "; then " + result.message);
     if (result.status == FillResult::Status::verified) {
@@ -151,6 +219,12 @@ class MeshRun {
       for (InterfaceTriangle& t : triangles) std::swap(t.v[1], t.v[2]);
   }
 
+  void judge_stitched() {
+    judge_surface();
+    report_.stitched.open_edges = report_.surface->open_edges;
+    report_.stitched.self_intersections = report_.surface->self_intersections;
+  }
+
   /// Closure and intersections, on the coordinates that will be written.
   void judge_surface() {
     world_surface_ = surface_;
@@ -158,8 +232,6 @@ class MeshRun {
     SurfaceCheckOptions check;
     check.threads = o_.threads;
     report_.surface = check_surface(world_surface_, check);
-    report_.stitched.open_edges = report_.surface->open_edges;
-    report_.stitched.self_intersections = report_.surface->self_intersections;
     for (LabelReport& row : report_.labels)
       for (const LabelSurface& s : report_.surface->labels)
         if (s.label == row.label) {
@@ -305,6 +377,7 @@ class MeshRun {
   Stack stack_;
   Frame frame_;
   int axis_ = 2;
+  double pixel_mm_ = 1, gap_mm_ = 1;
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   std::optional<TetMesh> mesh_;
   WorldSpace world_ = WorldSpace::lps;

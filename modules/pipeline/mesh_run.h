@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "contour/extract.h"
+#include "enhance/enhance.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
 #include "report/run_report.h"
@@ -22,9 +23,13 @@ struct MeshRunOptions {
   Target target = Target::volume;
   InputOptions input;
   ContourOptions contours;
+  std::optional<int> virtual_sections;            ///< per gap of a label volume; unset: as many as make it about a pixel
   StitchOptions stitch;                           ///< label_caps are given by name or number in label_caps_text
   std::vector<std::pair<std::string, Caps>> label_caps_text;
-  bool fill_default = true;                       ///< the volume mesher's default for the surface at hand
+  bool enhance = false;                           ///< smooth and remesh the stitched surface
+  std::optional<std::size_t> enhance_up_to;       ///< triangles; a larger stitched surface is kept as it is, with a warning
+  EnhanceOptions enhancement;                     ///< pixel and gap are set by the run; label_edge_mm by label_edges_text
+  std::vector<std::pair<std::string, double>> label_edges_text;
   FillOptions fill;
   std::string space = "lps";                      ///< "lps" or "ras"
   std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format
@@ -36,7 +41,7 @@ struct MeshRunOptions {
   std::vector<std::string> notes;                 ///< warnings of the caller, for the report
 };
 
-/// Slice stack to verified surface and volume mesh: read, contours, stitch, volume, validate, write. Everything
+/// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write. Everything
 /// that is written appears whole or not at all.
 /// @throws Error: input, output, usage; no_result after the report (and the offending triangles) were written.
 RunReport run_mesh(const MeshRunOptions& options, Progress& progress);
