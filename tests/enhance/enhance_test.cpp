@@ -60,7 +60,7 @@ std::string broken(const InterfaceComplex& before, const EnhanceResult& after) {
 
 TEST(EnhanceComplex, KeepsRandomStacksClosedAndFreeOfIntersections) {
   int enhanced = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Stitched s = stitch_volume(random_volume(seed), 0.5);
     EnhanceOptions o = options_of(s.stack);
     if (seed % 3 == 1) o.edge_length_mm = 2 * o.pixel_mm;
@@ -69,7 +69,7 @@ TEST(EnhanceComplex, KeepsRandomStacksClosedAndFreeOfIntersections) {
     EXPECT_EQ(broken(s.complex(), r), "") << "seed " << seed << ", level " << r.level;
     enhanced += r.level == "enhanced";
   }
-  EXPECT_GE(enhanced, 59);
+  EXPECT_GE(enhanced, 39);
 }
 
 TEST(EnhanceComplex, GivesTheSameBytesWhateverTheThreadCount) {
