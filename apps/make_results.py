@@ -57,9 +57,10 @@ PICTURES = [
 DRAWN = """
 mkdir -p build/pictures; cd build/pictures; D=../../../shared/data; S=$D/heart_sax_sunnybrook/SC-HF-I-4
 ../stackmesh mesh ../../testdata/femur.nii.gz -o femur.vtp -o femur.vtu
-../stackmesh surface $D/skull_ct_invesalius/bone_mask.nii.gz -o skull.vtp
-../stackmesh mesh $D/torso_totalseg/torso_3mm_61labels.nii.gz -o torso.vtp -o torso.vtu
-../stackmesh mesh 1=$S/epi_ED.cnt 2=$S/endo_ED.cnt -o sax.vtp -o sax.vtu; cat $S/epi_ED.cnt $S/endo_ED.cnt > sax.cnt
+s="--no-enhance --interpolate 0"
+../stackmesh surface $D/skull_ct_invesalius/bone_mask.nii.gz $s -o skull.vtp
+../stackmesh mesh $D/torso_totalseg/torso_3mm_61labels.nii.gz $s -o torso.vtp -o torso.vtu
+../stackmesh mesh 1=$S/epi_ED.cnt 2=$S/endo_ED.cnt $s -o sax.vtp -o sax.vtu; cat $S/epi_ED.cnt $S/endo_ED.cnt > sax.cnt
 r=../../apps/render.py; o=../../docs; cut="tetrahedra, cut open"
 $r femur.vtp@25,8 femur.vtu@cut=y=-69.5@25,8 -o $o/femur.png --size 400x760 --title surface --title "$cut"
 $r skull.vtp@35,8 skull.vtp@cut=x@60,8 -o $o/skull.png --size 500x420 --title surface --title "cut open"
