@@ -126,10 +126,17 @@ struct Call {
   bool refine = false;
   std::string tolerance;  // "" (TetGen's 1e-8 of the box) or "T1e-12"
   double z_scale = 1;
+  int turns = 0;  // of the axes, x -> y -> z -> x: exact, and TetGen takes another way
 };
 
+Vec3 turned(Vec3 p, int turns) {
+  for (int i = 0; i < turns; ++i) p = {p.y, p.z, p.x};
+  return p;
+}
+
 std::string describe(const Call& call, const std::string& switches) {
-  return "TetGen -" + switches + (call.z_scale == 1 ? "" : " with z scaled by " + number(call.z_scale));
+  return "TetGen -" + switches + (call.z_scale == 1 ? "" : " with z scaled by " + number(call.z_scale)) +
+         (call.turns == 0 ? "" : " with the axes turned " + std::string(call.turns == 1 ? "once" : "twice"));
 }
 
 /// What TetGen complained about, as one line; empty if it did not complain. Progress, point numbers (they are
@@ -202,14 +209,15 @@ class Filler {
     FillResult first = std::move(result);
     if (!options_.known_sound && search(first)) return first;
     for (const Call& next :
-         {Call{false, "", scale / 4}, Call{false, "", 4 * scale}, Call{false, "T1e-12", scale},
-          Call{false, "T1e-16", scale}, Call{false, "T1e-12", 4 * scale}}) {
+         {Call{false, "", scale / 4}, Call{false, "", scale, 1}, Call{false, "", scale, 2}, Call{false, "", 4 * scale},
+          Call{false, "", scale / 4, 1}, Call{false, "", scale / 4, 2}, Call{false, "", 4 * scale, 1},
+          Call{false, "T1e-12", scale}, Call{false, "T1e-16", scale}, Call{false, "T1e-12", 4 * scale}}) {
       if (Clock::now() >= deadline_) break;
       result = attempt(next, deadline_);
       if (result.status != Status::verified) continue;
       const std::string note = before.empty() ? first.message : before;
       if (refinement_pays) {
-        FillResult refined = attempt({true, next.tolerance, next.z_scale}, deadline_);
+        FillResult refined = attempt({true, next.tolerance, next.z_scale, next.turns}, deadline_);
         if (refined.status == Status::verified) return with_note(std::move(refined), note);
       }
       return with_note(std::move(result), note);
@@ -253,20 +261,20 @@ class Filler {
     return s + "YM" + call.tolerance;
   }
 
-  Reply call_worker(const std::string& switches, double z_scale, Clock::time_point deadline) {
-    std::vector<Vec3> scaled;
-    if (z_scale != 1) {
-      scaled = input_.points;
-      for (Vec3& p : scaled) p.z *= z_scale;
+  Reply call_worker(const std::string& switches, const Call& call, Clock::time_point deadline) {
+    std::vector<Vec3> moved;
+    const bool as_is = call.z_scale == 1 && call.turns == 0;
+    if (!as_is) {
+      moved = input_.points;
+      for (Vec3& p : moved) p = turned({p.x, p.y, p.z * call.z_scale}, call.turns);
     }
-    return worker::run(program_, {switches, z_scale == 1 ? &input_.points : &scaled, &input_.corners},
-                       deadline);
+    return worker::run(program_, {switches, as_is ? &input_.points : &moved, &input_.corners}, deadline);
   }
 
   FillResult attempt(const Call& call, Clock::time_point deadline) {
     const std::string name = describe(call, switches(call));
     const auto start = Clock::now();
-    Reply reply = call_worker(switches(call) + "Jn", call.z_scale, deadline);
+    Reply reply = call_worker(switches(call) + "Jn", call, deadline);
     switch (reply.kind) {
       case Reply::Kind::not_a_worker:
         hopeless_ = true;
@@ -303,7 +311,10 @@ class Filler {
     mesh.faces = input_.welded;
     const auto known = static_cast<std::int32_t>(input_.points.size());
     const auto offset = static_cast<std::int32_t>(complex_.points.size()) - known;
-    for (Vec3 p : reply.added_points) mesh.points.push_back({p.x, p.y, p.z / call.z_scale});
+    for (const Vec3& added : reply.added_points) {
+      const Vec3 p = turned(added, (3 - call.turns) % 3);
+      mesh.points.push_back({p.x, p.y, p.z / call.z_scale});
+    }
     for (std::int32_t& v : reply.tets)
       if (v >= 0) v = v < known ? input_.original[v] : v + offset;
     volume::Finding finding = volume::label_tets({std::move(reply.tets), std::move(reply.neighbours)}, mesh);
@@ -364,7 +375,7 @@ class Filler {
 
   /// Asks TetGen (-d) for the triangles that intersect; true when it found some, now in `refusal`.
   bool search(FillResult& refusal) {
-    const Reply reply = call_worker("pdMJ", 1, deadline_);
+    const Reply reply = call_worker("pdMJ", Call{}, deadline_);
     std::set<std::int32_t> found;
     if (reply.kind == Reply::Kind::done) {
       const auto count = static_cast<std::int32_t>(complex_.triangles.size());
