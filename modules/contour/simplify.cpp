@@ -120,11 +120,6 @@ class ArcSimplifier {
     return {arcs_[c.arc].chain[c.from].position, arcs_[c.arc].chain[c.to].position};
   }
 
-  static bool on_segment(const GridSegment& s, GridPoint p) {
-    return orientation(s.a, s.b, p) == 0 && p.x >= std::min(s.a.x, s.b.x) && p.x <= std::max(s.a.x, s.b.x) &&
-           p.y >= std::min(s.a.y, s.b.y) && p.y <= std::max(s.a.y, s.b.y);
-  }
-
   /// Do the segments meet elsewhere than in common end points?
   static bool clash(const GridSegment& s, const GridSegment& t) {
     if (properly_cross(s, t)) return true;

@@ -86,6 +86,12 @@ inline std::int64_t orientation(GridPoint a, GridPoint b, GridPoint c) {
          (static_cast<std::int64_t>(b.y) - a.y) * (static_cast<std::int64_t>(c.x) - a.x);
 }
 
+/// Does p lie on the closed segment? Exact.
+inline bool on_segment(const GridSegment& s, GridPoint p) {
+  return orientation(s.a, s.b, p) == 0 && p.x >= std::min(s.a.x, s.b.x) && p.x <= std::max(s.a.x, s.b.x) &&
+         p.y >= std::min(s.a.y, s.b.y) && p.y <= std::max(s.a.y, s.b.y);
+}
+
 /// True when the interiors of the segments cross in one point; touching and overlapping do not count.
 inline bool properly_cross(const GridSegment& s, const GridSegment& t) {
   if (std::max(s.a.x, s.b.x) <= std::min(t.a.x, t.b.x) || std::max(t.a.x, t.b.x) <= std::min(s.a.x, s.b.x) ||

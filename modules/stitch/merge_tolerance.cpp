@@ -16,11 +16,6 @@ std::vector<GridSegment> segments_of(const Section& s) {
   return out;
 }
 
-bool on_segment(const GridSegment& s, GridPoint p) {
-  return orientation(s.a, s.b, p) == 0 && p.x >= std::min(s.a.x, s.b.x) && p.x <= std::max(s.a.x, s.b.x) &&
-         p.y >= std::min(s.a.y, s.b.y) && p.y <= std::max(s.a.y, s.b.y);
-}
-
 /// A section is sound when its edges meet in common end points only.
 bool is_sound(const Section& s) {
   const std::vector<GridSegment> segments = segments_of(s);
