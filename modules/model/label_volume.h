@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,10 +9,11 @@
 
 namespace stackmesh {
 
-/// A label of the input: its own number, its name ("" when the input has none).
+/// A label of the input: its own number, its name ("" when the input has none), its colour if the input carries one.
 struct LabelInfo {
   Label number = 0;
   std::string name;
+  std::optional<std::array<std::uint8_t, 3>> colour = std::nullopt;  ///< red, green, blue
 };
 
 /// A stack of label slices on a regular grid. `voxels` holds indices into `labels`, so that any label number
