@@ -11,9 +11,9 @@ foreach(target IN LISTS image_imported)
   endif()
 endforeach()
 stackmesh_module(image
-  SOURCES read_labels.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp png_check.cpp
+  SOURCES read_labels.cpp read_image.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp png_check.cpp
           masks.cpp palette.cpp file_names.cpp
-  HEADERS read_labels.h read_contours.h
+  HEADERS read_labels.h read_image.h read_contours.h
   USES base model
   PRIVATE ${ITK_LIBRARIES} opencv_core opencv_imgcodecs ZLIB::ZLIB)
 target_include_directories(stackmesh_image SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})

@@ -195,6 +195,29 @@ void read_as(itk::ImageIOBase& io, const Palette::Where& where, Palette& palette
   }
 }
 
+/// Reads all voxels into memory of the image's own type.
+void read_raw(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts, void* memory) {
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned d = 0; d < io.GetNumberOfDimensions(); ++d) region.SetSize(d, io.GetDimensions(d));
+  io.SetIORegion(region);
+  std::string damage;
+  std::exception_ptr failure;
+  // ITK overlooks broken check sums and short streams, so the stream is checked beside the reading.
+  parallel_for(facts.compressed ? 2 : 1, 0, [&](std::size_t task) {
+    if (task == 1) {
+      damage = check_deflate(facts.data_path, facts.data_offset, facts.data_size, facts.needed_bytes);
+      return;
+    }
+    try {
+      io.Read(memory);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  });
+  if (!damage.empty()) fail_input("cannot read the voxels: " + damage, path, again);
+  if (failure) std::rethrow_exception(failure);
+}
+
 void read_voxels(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts,
                  LabelVolume& volume) {
   const Palette::Where where = [&](std::size_t i) {
@@ -203,27 +226,7 @@ void read_voxels(itk::ImageIOBase& io, const std::string& path, const HeaderFact
     return std::pair<std::string, std::string>(
         path, "voxel (" + std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) + ")");
   };
-  const auto read = [&](void* memory) {
-    std::string damage;
-    std::exception_ptr failure;
-    // ITK overlooks broken check sums and short streams, so the stream is checked beside the reading.
-    parallel_for(facts.compressed ? 2 : 1, 0, [&](std::size_t task) {
-      if (task == 1) {
-        damage = check_deflate(facts.data_path, facts.data_offset, facts.data_size, facts.needed_bytes);
-        return;
-      }
-      try {
-        io.Read(memory);
-      } catch (...) {
-        failure = std::current_exception();
-      }
-    });
-    if (!damage.empty()) fail_input("cannot read the voxels: " + damage, path, again);
-    if (failure) std::rethrow_exception(failure);
-  };
-  itk::ImageIORegion region(io.GetNumberOfDimensions());
-  for (unsigned d = 0; d < io.GetNumberOfDimensions(); ++d) region.SetSize(d, io.GetDimensions(d));
-  io.SetIORegion(region);
+  const auto read = [&](void* memory) { read_raw(io, path, facts, memory); };
 
   Palette palette;
   switch (io.GetComponentType()) {
@@ -269,13 +272,10 @@ void read_voxels(itk::ImageIOBase& io, const std::string& path, const HeaderFact
   palette.finish(volume);
 }
 
-}  // namespace
-
-LabelVolume read_volume_file(const std::string& path, FileFormat format) {
-  const HeaderFacts facts = check_volume_header(path, format);
-  LabelVolume volume;
-  volume.kind = kind_of(format);
-  volume.warnings = facts.warnings;
+/// Opens the file, takes its grid, and lets `voxels` read on.
+template <class Voxels>
+void read_file(const std::string& path, FileFormat format, const HeaderFacts& facts, LabelVolume& grid, const char* smaller,
+               Voxels voxels) {
   try {
     const Quiet quiet;
     itk::Object::GlobalWarningDisplayOff();
@@ -285,24 +285,83 @@ LabelVolume read_volume_file(const std::string& path, FileFormat format) {
     if (format == FileFormat::nifti) alone = std::make_unique<const AloneNifti>(path);
     io->SetFileName(alone ? alone->path() : path);
     io->ReadImageInformation();
-    take_grid(*io, volume, path);
-    if (format == FileFormat::nifti) settle_nifti(facts, volume, path);
-    read_voxels(*io, path, facts, volume);
+    take_grid(*io, grid, path);
+    if (format == FileFormat::nifti) settle_nifti(facts, grid, path);
+    voxels(*io);
   } catch (const Error&) {
     throw;
   } catch (const itk::ExceptionObject&) {  // its text holds addresses and source lines, nothing for users
     fail_input("the file is damaged or truncated: its voxels or header cannot be decoded", path, again);
   } catch (const std::bad_alloc&) {
-    fail_input("the image does not fit into memory", path,
-               "crop it, or store it as 8- or 16-bit whole numbers");
+    fail_input("the image does not fit into memory", path, smaller);
   } catch (const std::exception& e) {
     fail_input(std::string("the file cannot be read (") + e.what() + ")", path, again);
   }
+}
+
+/// Reads the voxels as T and keeps them as float.
+template <class T>
+void read_floats(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts, std::vector<float>& values) {
+  if (io.GetComponentSize() != sizeof(T)) fail_internal("unexpected voxel size", "image module");
+  if constexpr (std::is_same_v<T, float>) {
+    read_raw(io, path, facts, values.data());
+  } else {
+    const std::unique_ptr<T[]> raw(new T[values.size()]);
+    read_raw(io, path, facts, raw.get());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(raw[i]);
+  }
+}
+
+void read_intensities(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts, std::vector<float>& values) {
+  switch (io.GetComponentType()) {
+    case Type::UCHAR: return read_floats<unsigned char>(io, path, facts, values);
+    case Type::CHAR: return read_floats<signed char>(io, path, facts, values);
+    case Type::USHORT: return read_floats<unsigned short>(io, path, facts, values);
+    case Type::SHORT: return read_floats<short>(io, path, facts, values);
+    case Type::UINT: return read_floats<unsigned int>(io, path, facts, values);
+    case Type::INT: return read_floats<int>(io, path, facts, values);
+    case Type::ULONG: return read_floats<unsigned long>(io, path, facts, values);
+    case Type::LONG: return read_floats<long>(io, path, facts, values);
+    case Type::ULONGLONG: return read_floats<unsigned long long>(io, path, facts, values);
+    case Type::LONGLONG: return read_floats<long long>(io, path, facts, values);
+    case Type::FLOAT: return read_floats<float>(io, path, facts, values);
+    case Type::DOUBLE: return read_floats<double>(io, path, facts, values);
+    default: fail_input("its voxel type is not read", path, "store the image as numbers of up to 64 bits");
+  }
+}
+
+}  // namespace
+
+LabelVolume read_volume_file(const std::string& path, FileFormat format) {
+  const HeaderFacts facts = check_volume_header(path, format);
+  LabelVolume volume;
+  volume.kind = kind_of(format);
+  volume.warnings = facts.warnings;
+  read_file(path, format, facts, volume, "crop it, or store it as 8- or 16-bit whole numbers",
+            [&](itk::ImageIOBase& io) { read_voxels(io, path, facts, volume); });
   for (LabelInfo& label : volume.labels) {
     const auto name = facts.names.find(label.number);
     if (name != facts.names.end()) label.name = name->second;
   }
   return volume;
+}
+
+IntensityVolume read_intensity_file(const std::string& path, FileFormat format) {
+  const HeaderFacts facts = check_volume_header(path, format);
+  LabelVolume grid;
+  grid.warnings = facts.warnings;
+  IntensityVolume image;
+  read_file(path, format, facts, grid, "crop it", [&](itk::ImageIOBase& io) {
+    image.values.resize(static_cast<std::size_t>(grid.size[0]) * grid.size[1] * grid.size[2]);
+    read_intensities(io, path, facts, image.values);
+  });
+  image.kind = kind_of(format);
+  image.warnings = std::move(grid.warnings);
+  image.size = grid.size;
+  image.spacing_mm = grid.spacing_mm;
+  image.origin_mm = grid.origin_mm;
+  image.axes = grid.axes;
+  return image;
 }
 
 }  // namespace stackmesh
