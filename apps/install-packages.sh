@@ -8,12 +8,12 @@ program=(
   g++ cmake ninja-build ccache
   libopencv-dev # the small -dev packages of its parts lack OpenCVConfig.cmake
   libcgal-dev libtet1.5-dev libopenmesh-dev
-  libinsighttoolkit5-dev
+  libinsighttoolkit5-dev libdcmtk-dev
   libtbb-dev libcli11-dev nlohmann-json3-dev
 )
 tests=(
   libgtest-dev libbenchmark-dev
-  python3 python3-numpy python3-scipy python3-nibabel python3-vtk9 python3-meshio gmsh
+  python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-vtk9 python3-meshio gmsh
 )
 pictures=(python3-vtk9 xvfb xauth libgl1-mesa-dri)
 

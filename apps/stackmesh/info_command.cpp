@@ -28,6 +28,7 @@ Json describe(const Input& input) {
                         {"volume_mm3", static_cast<double>(counts[k]) * v.voxel_volume_mm3()}});
   } else {
     const Stack& s = *input.sections;
+    j["space"] = input.anatomical ? "lps" : "none";
     j["sections"] = s.sections.size();
     j["z_mm"] = {s.sections.front().z_mm, s.sections.back().z_mm};
     for (std::size_t k = 1; k < s.labels.size(); ++k) {

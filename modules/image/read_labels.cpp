@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "image/dicom_file.h"
 #include "image/file_names.h"
 #include "image/masks.h"
 #include "image/slices.h"
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* inputs =
-    "give .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .gipl, .gipl.gz, a folder of PNG/TIFF slices or of masks, "
+    "give .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .gipl, .gipl.gz, DICOM, a folder of PNG/TIFF slices or of masks, "
     "or .cnt";
 
 bool is_slice(FileFormat f) {
@@ -90,6 +91,7 @@ LabelVolume read_any(const std::string& path, const ReadOptions& options) {
     fail_input("the input does not exist", path.empty() ? "''" : path, "check the path");
   }
   const FileFormat format = format_of(path);
+  if (format == FileFormat::unknown && dicom_kind(path) != DicomKind::none) refuse_dicom(path);
   if (format == FileFormat::unknown) fail_input("the ending is of no known format", path, inputs);
   if (is_slice(format)) return read_slices({path}, options.spacing_mm);
   if (options.spacing_mm)

@@ -1,8 +1,7 @@
 #include "model/label_volume.h"
 
 #include <algorithm>
-#include <limits>
-#include <set>
+#include <cctype>
 
 #include "base/error.h"
 
@@ -43,45 +42,63 @@ std::string list_labels(const std::vector<LabelInfo>& labels) {
   return text;
 }
 
+/// A name as it can be typed in a list: '_' for anything but letters, digits, '.', '+' and '-'.
+std::string typed(std::string name) {
+  for (char& c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    if (u < 128 && !std::isalnum(u) && c != '.' && c != '+' && c != '-') c = '_';
+  }
+  return name;
+}
+
+/// Appends the labels that `item` names: by its exact name, else as it is typed ("Lt_Lung" for "Lt Lung"), else by
+/// number or range. @return false when there is none
+bool choose(const std::vector<LabelInfo>& labels, const std::string& item, std::vector<std::size_t>& chosen) {
+  const auto take = [&](auto fits) {
+    bool any = false;
+    for (std::size_t i = 1; i < labels.size(); ++i) {
+      if (!fits(labels[i])) continue;
+      any = true;
+      if (std::find(chosen.begin(), chosen.end(), i) == chosen.end()) chosen.push_back(i);
+    }
+    return any;
+  };
+  // A name wins over a range, so that "lung-2" can be a name.
+  if (take([&](const LabelInfo& l) { return l.name == item; })) return true;
+  const std::size_t dash = item.find('-');
+  if (is_number(item) || (dash != std::string::npos && is_number(item.substr(0, dash)) && is_number(item.substr(dash + 1)))) {
+    const long low = std::stol(item.substr(0, dash));
+    const long high = dash == std::string::npos ? low : std::stol(item.substr(dash + 1));
+    if (high < low) fail_usage("a range of labels runs downwards", "'" + item + "'", "write the smaller number first");
+    return take([&](const LabelInfo& l) { return l.number >= low && l.number <= high; });
+  }
+  return take([&](const LabelInfo& l) { return !l.name.empty() && typed(l.name) == typed(item); });
+}
+
 }  // namespace
 
-std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, const std::string& text) {
-  std::set<std::size_t> chosen;
+std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, const std::string& text) {
+  std::vector<std::size_t> chosen;
   if (text.empty()) {
-    for (std::size_t i = 1; i < labels.size(); ++i) chosen.insert(i);
-    return {chosen.begin(), chosen.end()};
+    for (std::size_t i = 1; i < labels.size(); ++i) chosen.push_back(i);
+    return chosen;
   }
   std::size_t begin = 0;
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string item = text.substr(begin, end - begin);
     begin = end + 1;
-    if (item.empty())
-      fail_usage("empty entry in a list of labels", "'" + text + "'", "write --label 1,4,7-9,NAME");
-    const std::size_t before = chosen.size();
-    const std::size_t dash = item.find('-');
-    // A name wins over a range, so that "lung-2" can be a name.
-    for (std::size_t i = 1; i < labels.size(); ++i)
-      if (labels[i].name == item) chosen.insert(i);
-    bool known = chosen.size() > before || std::any_of(labels.begin() + 1, labels.end(),
-                                                       [&](const LabelInfo& l) { return l.name == item; });
-    if (!known && (is_number(item) || (dash != std::string::npos && is_number(item.substr(0, dash)) &&
-                                       is_number(item.substr(dash + 1))))) {
-      const long low = std::stol(item.substr(0, dash));
-      const long high = dash == std::string::npos ? low : std::stol(item.substr(dash + 1));
-      if (high < low)
-        fail_usage("a range of labels runs downwards", "'" + item + "'", "write the smaller number first");
-      for (std::size_t i = 1; i < labels.size(); ++i)
-        if (labels[i].number >= low && labels[i].number <= high) {
-          chosen.insert(i);
-          known = true;
-        }
-    }
-    if (!known)
-      fail_input("label '" + item + "' is not in the input", "--label " + text,
-                 "choose among: " + list_labels(labels));
+    if (item.empty()) fail_usage("empty entry in a list of labels", "'" + text + "'", "write --label 1,4,7-9,NAME");
+    if (!choose(labels, item, chosen))
+      fail_input("label '" + item + "' is not in the input", "--label " + text, "choose among: " + list_labels(labels));
   }
-  return {chosen.begin(), chosen.end()};
+  return chosen;
+}
+
+std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, const std::string& text) {
+  std::vector<std::size_t> chosen = labels_in_order(labels, text);
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
 }
 
 }  // namespace stackmesh

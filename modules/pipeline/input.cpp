@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "image/dicom_file.h"
 #include "image/read_contours.h"
 #include "image/read_labels.h"
+#include "image/read_structure_set.h"
 #include "stitch/polygons.h"
 
 namespace stackmesh {
@@ -40,10 +42,28 @@ void read_contours(const InputOptions& options, Input& input) {
     for (std::size_t k : keep) chosen.push_back(files[k - 1]);
     files = std::move(chosen);
   }
-  if (options.merge && files.size() > 1)
-    fail_usage("--merge is for label volumes", files[0].path, "give the outline of the merged label as one file");
+  ContourStackOptions contours;
+  contours.merge = options.merge;
   input.kind = "contours";
-  input.sections = sections_from_contours(files, input.warnings);
+  input.sections = sections_from_contours(files, input.warnings, contours);
+  input.labels.assign(input.sections->labels.begin() + 1, input.sections->labels.end());
+}
+
+void read_structures(const InputOptions& options, const std::string& path, Input& input) {
+  if (options.spacing_mm) fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: contours are in mm");
+  StructureSet set = read_structure_set(path, options.labels);
+  input.warnings = std::move(set.warnings);
+  ContourStackOptions contours;
+  contours.slices = true;
+  contours.same_height_mm = 0.01;
+  contours.first_wins = !options.labels.empty();
+  contours.report_overlaps = !options.merge;
+  contours.fill_missing = contours.repair = true;
+  contours.merge = options.merge;
+  contours.frame = set.frame;
+  input.kind = "rtstruct";
+  input.anatomical = true;
+  input.sections = sections_from_contours(set.structures, input.warnings, contours);
   input.labels.assign(input.sections->labels.begin() + 1, input.sections->labels.end());
 }
 
@@ -58,6 +78,7 @@ void read_volume(const InputOptions& options, Input& input) {
   const std::vector<std::size_t> keep = resolve_labels(volume.labels, options.labels);
   if (options.merge || keep.size() + 1 < volume.labels.size()) volume = select_labels(std::move(volume), keep, options.merge);
   input.labels.assign(volume.labels.begin() + 1, volume.labels.end());
+  input.anatomical = volume.anatomical;
   input.volume = std::move(volume);
 }
 
@@ -68,6 +89,7 @@ Input read_input(const InputOptions& options) {
   if (options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
   for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
   if (is_contour_input(options.paths[0])) read_contours(options, input);
+  else if (options.paths.size() == 1 && dicom_kind(options.paths[0]) == DicomKind::structure_set) read_structures(options, options.paths[0], input);
   else read_volume(options, input);
   return input;
 }
@@ -75,7 +97,7 @@ Input read_input(const InputOptions& options) {
 void check_stack_axis(const Input& input, StackAxis axis) {
   if (!input.volume) {
     if (axis == StackAxis::x || axis == StackAxis::y)
-      fail_usage("contour files are stacked along z", "--axis", "leave --axis out");
+      fail_usage("contours are stacked as they are drawn", "--axis", "leave --axis out");
     return;
   }
   const int a = stacking_axis(*input.volume, axis);

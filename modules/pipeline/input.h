@@ -12,16 +12,17 @@ namespace stackmesh {
 
 /// What to read, and which labels of it.
 struct InputOptions {
-  std::vector<std::string> paths;  ///< one volume, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
+  std::vector<std::string> paths;  ///< one volume, DICOM file, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
   std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
-  std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all
+  std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   bool merge = false;                               ///< selected labels become one
 };
 
-/// The input as read: a volume or, for contour files, sections.
+/// The input as read: a volume or, for contours, sections.
 struct Input {
   std::optional<LabelVolume> volume;
   std::optional<Stack> sections;
+  bool anatomical = false;        ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
   std::string path, kind;
   std::vector<LabelInfo> labels;  ///< without the background
   std::vector<std::string> warnings;

@@ -62,7 +62,7 @@ class MeshRun {
     for (const std::string& w : input_.warnings) warn(w);
     report_.input.path = input_.path;
     report_.input.kind = input_.kind;
-    const bool anatomical = input_.volume && input_.volume->anatomical;
+    const bool anatomical = input_.anatomical;
     if (o_.space == "ras" && !anatomical)
       fail_usage("--space ras needs an input with anatomical axes", input_.path, "leave --space out: coordinates are kept as they are");
     world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;

@@ -7,11 +7,23 @@
 
 namespace stackmesh {
 
+struct ContourStackOptions {
+  bool slices = false;             ///< a contour stands for a slice, which reaches half a gap to either side; false: a plane cut
+  double same_height_mm = 1e-3;    ///< contours of heights that are at most so far apart are one section
+  bool first_wins = false;         ///< where labels overlap: the one given first; false: the smaller one
+  bool report_overlaps = false;    ///< a warning says how much labels overlap, and who got it
+  bool fill_missing = false;       ///< heights that a label lacks between its own get contours made from their neighbours
+  bool repair = false;             ///< contours of one label that cross are united where even-odd says nearly the same
+  bool merge = false;              ///< all contours become one label, numbered as the smallest
+  Frame frame;                     ///< plane coordinates and height of the contours to the world
+};
+
 /// Makes sections out of contour polygons: a constrained triangulation of each section's polygons, regions
-/// grown in it, and nesting by region [Wang et al. 2005, 3.1]. Orientation of the input is free. Where labels
-/// overlap, the inner (smaller) one wins. The grid is a power of two mm, about 1e-5 of the box.
+/// grown in it, and nesting by region [Wang et al. 2005, 3.1]; an edge walked twice (the bridge of a keyhole contour)
+/// counts as none. Orientation of the input is free. The grid is a power of two mm, about 1e-5 of the box.
 /// @throws Error(input) naming file, section and contour where contours of one label cross themselves or each
 /// other, where labels share a number, or where fewer than two sections hold contours.
-Stack sections_from_contours(const std::vector<ContourFile>& files, std::vector<std::string>& warnings);
+Stack sections_from_contours(const std::vector<ContourFile>& files, std::vector<std::string>& warnings,
+                             const ContourStackOptions& options = {});
 
 }  // namespace stackmesh

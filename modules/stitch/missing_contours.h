@@ -1,0 +1,13 @@
+#pragma once
+// Contours between the heights that a label has: internal to the module.
+#include <vector>
+
+#include "model/contours.h"
+
+namespace stackmesh {
+
+/// The contours of one label at a height between two of its sections: the two are stitched, and the surface is cut at
+/// that height, so that the result is what the stitched surface has there.
+ContourSection contours_between(const ContourSection& low, const ContourSection& high, double z_mm);
+
+}  // namespace stackmesh
