@@ -59,7 +59,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3")->check(positive),
       command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
       command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
-      command.add_option("--order", a.order, "1: linear tetrahedra")->check(CLI::Range(1, 2))->capture_default_str(),
+      command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")->check(CLI::Range(1, 2))->capture_default_str(),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
       command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
   if (target == Target::surface)
@@ -83,7 +83,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.threads = a.contours.threads;
   o.stitch.snap_mm = a.snap_mm;
   parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
-  if (a.order != 1) fail_usage("quadratic tetrahedra are not built yet", "--order 2", "use --order 1");
+  o.order = a.order;
   if (a.max_volume > 0) o.fill.max_volume_mm3 = a.max_volume;
   if (a.radius_edge > 0) o.fill.radius_edge = a.radius_edge;
   if (a.dihedral > 0) o.fill.dihedral_deg = a.dihedral;
@@ -124,6 +124,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"threads", a.contours.threads > 0 ? std::to_string(a.contours.threads) : "all"},
                     {"strict", a.strict ? "on" : "off"}};
   if (target == Target::volume) {
+    o.option_texts.push_back({"order", std::to_string(a.order)});
     o.option_texts.push_back({"max_volume_mm3", a.max_volume > 0 ? text_of(a.max_volume) : "unset"});
     o.option_texts.push_back({"radius_edge", a.radius_edge > 0 ? text_of(a.radius_edge) : "unset"});
     o.option_texts.push_back({"dihedral_deg", a.dihedral > 0 ? text_of(a.dihedral) : "unset"});

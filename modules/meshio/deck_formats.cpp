@@ -89,18 +89,23 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
   node_sets.add("NALL");
   for (const LabelGroup& g : mesh.labels) {
     out << "** label " << g.label << ": " << g.name
-        << "\n*ELEMENT, TYPE=C3D4, ELSET=" << element_sets.add(deck_name(g.name)) << '\n';
+        << "\n*ELEMENT, TYPE=" << (mesh.second_order() ? "C3D10" : "C3D4") << ", ELSET=" << element_sets.add(deck_name(g.name)) << '\n';
     for (std::size_t t = g.begin; t < g.end; ++t) {
       const auto& v = mesh.tets[t];
-      out << t + 1 << ", " << v[0] + 1 << ", " << v[1] + 1 << ", " << v[2] + 1 << ", " << v[3] + 1 << '\n';
+      out << t + 1 << ", " << v[0] + 1 << ", " << v[1] + 1 << ", " << v[2] + 1 << ", " << v[3] + 1;
+      if (mesh.second_order())
+        for (const std::int32_t m : mesh.tet_mids[t]) out << ", " << m + 1;
+      out << '\n';
     }
   }
   out << "*ELSET, ELSET=EALL, GENERATE\n1, " << mesh.tets.size() << ", 1\n";
 
   for (const PairGroup& g : mesh.pairs) {
     std::vector<std::int32_t> nodes;
-    for (std::size_t t = g.begin; t < g.end; ++t)
+    for (std::size_t t = g.begin; t < g.end; ++t) {
       nodes.insert(nodes.end(), mesh.triangles[t].v.begin(), mesh.triangles[t].v.end());
+      if (mesh.second_order()) nodes.insert(nodes.end(), mesh.triangle_mids[t].begin(), mesh.triangle_mids[t].end());
+    }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     out << "** labels " << g.below << '|' << g.above << ": " << g.name
@@ -115,6 +120,7 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
 
 // Medit, ASCII; version 2 stands for doubles.
 void write_medit(std::FILE* file, const PreparedMesh& mesh) {
+  if (mesh.second_order()) fail_usage("second-order tetrahedra are not written to Medit's .mesh", "--order 2", "choose .vtu .msh .inp or .vtk");
   OutputBuffer out(file);
   out << "MeshVersionFormatted 2\n# stackmesh, mm" << (mesh.space.empty() ? "" : ". " + mesh.space_mark())
       << '\n';

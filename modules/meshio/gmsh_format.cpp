@@ -45,6 +45,25 @@ struct Box {
   }
 };
 
+/// Gmsh's element types.
+int triangle_type(const PreparedMesh& mesh) { return mesh.second_order() ? 9 : 2; }
+int tet_type(const PreparedMesh& mesh) { return mesh.second_order() ? 11 : 4; }
+
+void write_triangle(OutputBuffer& out, const PreparedMesh& mesh, std::size_t i) {
+  for (const std::int32_t v : mesh.triangles[i].v) out << ' ' << v + 1;
+  if (mesh.second_order())
+    for (const std::int32_t v : mesh.triangle_mids[i]) out << ' ' << v + 1;
+  out << '\n';
+}
+
+/// Gmsh has the last two mid-side nodes the other way round: on edges 23, 13.
+void write_tet(OutputBuffer& out, const PreparedMesh& mesh, std::size_t i) {
+  for (const std::int32_t v : mesh.tets[i]) out << ' ' << v + 1;
+  if (mesh.second_order())
+    for (const int k : {0, 1, 2, 3, 5, 4}) out << ' ' << mesh.tet_mids[i][k] + 1;
+  out << '\n';
+}
+
 /// An entity of Gmsh's: a surface between two labels, or the volume of one. It owns the nodes that no entity
 /// before it owns, surfaces first.
 struct Entity {
@@ -67,16 +86,22 @@ std::vector<Entity> make_entities(const PreparedMesh& mesh, std::int32_t surface
   for (std::size_t i = 0; i < mesh.pairs.size(); ++i) {
     Entity entity;
     entity.tag = surface_tag + static_cast<std::int32_t>(i);
-    for (std::size_t t = mesh.pairs[i].begin; t < mesh.pairs[i].end; ++t)
+    for (std::size_t t = mesh.pairs[i].begin; t < mesh.pairs[i].end; ++t) {
       for (const std::int32_t v : mesh.triangles[t].v) take(entity, v);
+      if (mesh.second_order())
+        for (const std::int32_t v : mesh.triangle_mids[t]) take(entity, v);
+    }
     entities.push_back(std::move(entity));
   }
   for (const LabelGroup& group : mesh.labels) {
     Entity entity;
     entity.dimension = 3;
     entity.tag = group.label;
-    for (std::size_t t = group.begin; t < group.end; ++t)
+    for (std::size_t t = group.begin; t < group.end; ++t) {
       for (const std::int32_t v : mesh.tets[t]) take(entity, v);
+      if (mesh.second_order())
+        for (const std::int32_t v : mesh.tet_mids[t]) take(entity, v);
+    }
     for (std::size_t i = 0; i < mesh.pairs.size(); ++i) {
       if (mesh.pairs[i].below != group.label && mesh.pairs[i].above != group.label) continue;
       entity.bounds += mesh.pairs[i].below == group.label ? " " : " -";
@@ -127,17 +152,17 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   out << "$Elements\n" << entities.size() << ' ' << count << " 1 " << count << '\n';
   for (std::size_t i = 0; i < mesh.pairs.size(); ++i) {
     const PairGroup& g = mesh.pairs[i];
-    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << " 2 " << g.end - g.begin << '\n';
+    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << ' ' << triangle_type(mesh) << ' ' << g.end - g.begin << '\n';
     for (std::size_t t = g.begin; t < g.end; ++t) {
-      const auto& v = mesh.triangles[t].v;
-      out << mesh.tets.size() + t + 1 << ' ' << v[0] + 1 << ' ' << v[1] + 1 << ' ' << v[2] + 1 << '\n';
+      out << mesh.tets.size() + t + 1;
+      write_triangle(out, mesh, t);
     }
   }
   for (const LabelGroup& g : mesh.labels) {
-    out << "3 " << g.label << " 4 " << g.end - g.begin << '\n';
+    out << "3 " << g.label << ' ' << tet_type(mesh) << ' ' << g.end - g.begin << '\n';
     for (std::size_t t = g.begin; t < g.end; ++t) {
-      const auto& v = mesh.tets[t];
-      out << t + 1 << ' ' << v[0] + 1 << ' ' << v[1] + 1 << ' ' << v[2] + 1 << ' ' << v[3] + 1 << '\n';
+      out << t + 1;
+      write_tet(out, mesh, t);
     }
   }
   out << "$EndElements\n";
@@ -157,16 +182,14 @@ void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
   // Number, type, two tags (physical group and entity, the same here), corners.
   for (const LabelGroup& g : mesh.labels)
     for (std::size_t t = g.begin; t < g.end; ++t) {
-      const auto& v = mesh.tets[t];
-      out << t + 1 << " 4 2 " << g.label << ' ' << g.label << ' ' << v[0] + 1 << ' ' << v[1] + 1 << ' '
-          << v[2] + 1 << ' ' << v[3] + 1 << '\n';
+      out << t + 1 << ' ' << tet_type(mesh) << " 2 " << g.label << ' ' << g.label;
+      write_tet(out, mesh, t);
     }
   for (std::size_t i = 0; i < mesh.pairs.size(); ++i)
     for (std::size_t t = mesh.pairs[i].begin; t < mesh.pairs[i].end; ++t) {
-      const auto& v = mesh.triangles[t].v;
       const std::int32_t tag = surface_tag + static_cast<std::int32_t>(i);
-      out << mesh.tets.size() + t + 1 << " 2 2 " << tag << ' ' << tag << ' ' << v[0] + 1 << ' ' << v[1] + 1
-          << ' ' << v[2] + 1 << '\n';
+      out << mesh.tets.size() + t + 1 << ' ' << triangle_type(mesh) << " 2 " << tag << ' ' << tag;
+      write_triangle(out, mesh, t);
     }
   out << "$EndElements\n";
 }

@@ -108,6 +108,10 @@ void take_points(const std::vector<Vec3>& points, const std::string& path, Prepa
     check(t, points.size(), path);
     for (const std::int32_t v : t) number[v] = 0;
   }
+  for (const auto& t : mesh.tet_mids) {
+    check(t, points.size(), path);
+    for (const std::int32_t v : t) number[v] = 0;
+  }
   mesh.points.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (number[i] < 0) continue;
@@ -122,6 +126,36 @@ void take_points(const std::vector<Vec3>& points, const std::string& path, Prepa
     for (std::int32_t& v : t.v) v = number[v];
   for (auto& t : mesh.tets)
     for (std::int32_t& v : t) v = number[v];
+  for (auto& t : mesh.tet_mids)
+    for (std::int32_t& v : t) v = number[v];
+}
+
+/// The mid-side nodes of the triangles, from the tets that have their edges.
+void find_triangle_mids(const std::string& path, PreparedMesh& mesh) {
+  std::vector<char> on_triangle(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.triangles)
+    for (const std::int32_t v : t.v) on_triangle[v] = 1;
+  struct Edge {
+    std::int32_t low, high, mid;
+  };
+  const auto less = [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; };
+  std::vector<Edge> edges;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      const std::int32_t a = mesh.tets[t][kTetEdges[k][0]], b = mesh.tets[t][kTetEdges[k][1]];
+      if (on_triangle[a] && on_triangle[b]) edges.push_back({std::min(a, b), std::max(a, b), mesh.tet_mids[t][k]});
+    }
+  std::sort(edges.begin(), edges.end(), less);
+  mesh.triangle_mids.resize(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = mesh.triangles[i].v[k], b = mesh.triangles[i].v[(k + 1) % 3];
+      const Edge wanted = {std::min(a, b), std::max(a, b), 0};
+      const auto at = std::lower_bound(edges.begin(), edges.end(), wanted, less);
+      if (at == edges.end() || at->low != wanted.low || at->high != wanted.high)
+        fail_internal("an edge of an interface triangle belongs to no tet", path);
+      mesh.triangle_mids[i][k] = at->mid;
+    }
 }
 
 std::set<Label> labels_of(const std::vector<InterfaceTriangle>& triangles) {
@@ -179,6 +213,12 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
   const Grouping<Label> groups(mesh.tets.size(), [&](std::size_t i) { return mesh.labels[i]; });
   prepared.tets.reserve(mesh.tets.size());
   for (const std::size_t i : groups.order) prepared.tets.push_back(mesh.tets[i]);
+  if (!mesh.mid.empty()) {
+    if (mesh.mid.size() != mesh.tets.size())
+      fail_internal("a mesh to be written has mid-side nodes for some tets only", path);
+    prepared.tet_mids.reserve(mesh.tets.size());
+    for (const std::size_t i : groups.order) prepared.tet_mids.push_back(mesh.mid[i]);
+  }
   std::vector<InterfaceTriangle> triangles = mesh.faces;
   for (InterfaceTriangle& t : triangles)
     if (wants_flip(t)) flip(t);
@@ -190,6 +230,7 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
         {groups.keys[g], groups.begins[g], groups.begins[g + 1], names[groups.keys[g]]});
   group_triangles(std::move(triangles), names, prepared);
   take_points(mesh.points, path, prepared);
+  if (prepared.second_order()) find_triangle_mids(path, prepared);
   return prepared;
 }
 

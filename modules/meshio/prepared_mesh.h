@@ -29,11 +29,14 @@ struct PreparedMesh {
   std::vector<Vec3> points;
   std::vector<InterfaceTriangle> triangles;
   std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<std::array<std::int32_t, 6>> tet_mids;       ///< second order: as TetMesh::mid; else empty
+  std::vector<std::array<std::int32_t, 3>> triangle_mids;  ///< second order: on edges 01 12 20; else empty
   std::vector<PairGroup> pairs;    ///< ascending (below, above)
   std::vector<LabelGroup> labels;  ///< ascending; empty for a surface
   std::string space;               ///< "LPS", "RAS" or ""
 
   /// "SPACE=LPS", or "SPACE=" of nothing: empty.
+  bool second_order() const { return !tet_mids.empty(); }
   std::string space_mark() const { return space.empty() ? "" : "SPACE=" + space; }
 };
 

@@ -9,7 +9,8 @@
 namespace stackmesh {
 namespace {
 
-constexpr std::int32_t kTriangle = 5, kTet = 10;  // VTK's cell types
+// VTK's cell types; its order of mid-side nodes is ours.
+constexpr std::int32_t kTriangle = 5, kTet = 10, kTriangle6 = 22, kTet10 = 24;
 
 /// A VTK XML file whose arrays follow the header as raw bytes.
 class XmlFile {
@@ -83,20 +84,23 @@ struct CellLabels {
   }
 };
 
-/// Corners of the tets followed by those of the triangles, and where each cell ends.
+/// Nodes of the tets followed by those of the triangles, and where each cell ends.
 struct Connectivity {
   std::vector<std::int64_t> ends;
   std::vector<std::int32_t> corners;
 
   explicit Connectivity(const PreparedMesh& mesh) {
-    corners.reserve(4 * mesh.tets.size() + 3 * mesh.triangles.size());
+    corners.reserve((mesh.second_order() ? 10 : 4) * mesh.tets.size() + (mesh.second_order() ? 6 : 3) * mesh.triangles.size());
     ends.reserve(mesh.tets.size() + mesh.triangles.size());
-    for (const auto& t : mesh.tets) {
-      corners.insert(corners.end(), t.begin(), t.end());
+    for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+      corners.insert(corners.end(), mesh.tets[i].begin(), mesh.tets[i].end());
+      if (mesh.second_order()) corners.insert(corners.end(), mesh.tet_mids[i].begin(), mesh.tet_mids[i].end());
       ends.push_back(static_cast<std::int64_t>(corners.size()));
     }
-    for (const InterfaceTriangle& t : mesh.triangles) {
-      corners.insert(corners.end(), t.v.begin(), t.v.end());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const auto& v = mesh.triangles[i].v;
+      corners.insert(corners.end(), v.begin(), v.end());
+      if (mesh.second_order()) corners.insert(corners.end(), mesh.triangle_mids[i].begin(), mesh.triangle_mids[i].end());
       ends.push_back(static_cast<std::int64_t>(corners.size()));
     }
   }
@@ -133,8 +137,8 @@ void write_vtp(std::FILE* file, const PreparedMesh& mesh) {
 void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
   const CellLabels cells(mesh);
   const Connectivity connectivity(mesh);
-  std::vector<std::uint8_t> types(mesh.tets.size(), kTet);
-  types.resize(types.size() + mesh.triangles.size(), kTriangle);
+  std::vector<std::uint8_t> types(mesh.tets.size(), mesh.second_order() ? kTet10 : kTet);
+  types.resize(types.size() + mesh.triangles.size(), mesh.second_order() ? kTriangle6 : kTriangle);
   XmlFile xml("UnstructuredGrid");
   xml.space(mesh.space, false);  // meshio refuses a file that holds a string
   xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
@@ -167,17 +171,16 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
     out.big_endian(p.z);
   }
   const std::size_t count = mesh.tets.size() + mesh.triangles.size();
-  out << "\nCELLS " << count << ' ' << 5 * mesh.tets.size() + 4 * mesh.triangles.size() << '\n';
-  for (const auto& t : mesh.tets) {
-    out.big_endian(std::int32_t{4});
-    for (const std::int32_t v : t) out.big_endian(v);
-  }
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    out.big_endian(std::int32_t{3});
-    for (const std::int32_t v : t.v) out.big_endian(v);
+  const Connectivity connectivity(mesh);
+  out << "\nCELLS " << count << ' ' << count + connectivity.corners.size() << '\n';
+  for (std::int64_t cell = 0, at = 0; cell < static_cast<std::int64_t>(count); ++cell) {
+    const std::int64_t end = connectivity.ends[cell];
+    out.big_endian(static_cast<std::int32_t>(end - at));
+    for (; at < end; ++at) out.big_endian(connectivity.corners[at]);
   }
   out << "\nCELL_TYPES " << count << '\n';
-  for (std::size_t i = 0; i < count; ++i) out.big_endian(i < mesh.tets.size() ? kTet : kTriangle);
+  for (std::size_t i = 0; i < count; ++i) 
+    out.big_endian(i < mesh.tets.size() ? (mesh.second_order() ? kTet10 : kTet) : (mesh.second_order() ? kTriangle6 : kTriangle));
   out << "\nCELL_DATA " << count << "\nFIELD FieldData 3\n";
   const auto field = [&](const char* name, const std::vector<std::int32_t>& values) {
     out << name << " 1 " << count << " int\n";

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "interpolate/virtual_slices.h"
 #include "pipeline/stage_clock.h"
+#include "volume/raise_order.h"
 
 namespace stackmesh {
 namespace {
@@ -50,6 +51,10 @@ class MeshRun {
                    o_.target == Target::volume ? "choose .vtu .msh .inp .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
                                                : "choose .stl .ply .obj .off .vtp");
     }
+    if (o_.order == 2)
+      for (const std::string& path : o_.outputs)
+        if (ends_with(path, ".mesh"))
+          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp or .vtk");
     for (const std::string& path : o_.reports)
       if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
@@ -203,6 +208,7 @@ class MeshRun {
     if (result.status == FillResult::Status::verified) {
       report_.closure = "verified";
       mesh_ = std::move(result.mesh);
+      if (o_.order == 2) raise();
     } else {
       report_.closure = "failed";
       refusal_ = "the volume mesher did not fill the surface (" + result.message + ")";
@@ -210,6 +216,13 @@ class MeshRun {
       if (result.status == FillResult::Status::crashed) mend_ = "free some memory, or mesh fewer labels at once";
       offending_ = std::move(result.offending_triangles);
     }
+  }
+
+  /// In stack coordinates, where flat caps are planes across an axis.
+  void raise() {
+    OrderOptions options;
+    options.threads = o_.threads;
+    mesh_ = raise_order(std::move(*mesh_), options).mesh;
   }
 
   /// Stack coordinates to LPS; a mirrored frame turns triangles and tets inside out, so they are turned back.
@@ -247,8 +260,8 @@ class MeshRun {
     if (mesh_) {
       to_world(mesh_->points, mesh_->faces);
       if (frame_.mirrors())
-        for (auto& t : mesh_->tets) std::swap(t[2], t[3]);
-      report_.volume = check_volume(*mesh_);
+        for (std::size_t t = 0; t < mesh_->tets.size(); ++t) turn_round(*mesh_, t);
+      report_.volume = check_volume(*mesh_, {o_.threads});
       for (LabelReport& row : report_.labels)
         for (const auto& l : report_.volume->labels)
           if (l.label == row.label) {
@@ -292,9 +305,9 @@ class MeshRun {
       refusal_ = "the stitched surface has " + std::to_string(s.open_edges) + " open edges and " +
                  std::to_string(s.self_intersections) + " self-intersections";
       for (const auto& pair : s.intersecting_pairs) offending_.insert(offending_.end(), pair.begin(), pair.end());
-    } else if (report_.volume && (report_.volume->inverted > 0 || report_.volume->nonconforming_faces > 0)) {
+    } else if (report_.volume && (report_.volume->inverted > 0 || !report_.volume->conforms)) {
       refusal_ = "the volume mesh has " + std::to_string(report_.volume->inverted) + " inverted tetrahedra and " +
-                 std::to_string(report_.volume->nonconforming_faces) + " faces that do not conform";
+                 std::to_string(report_.volume->nonconforming_faces + report_.volume->nonconforming_edges) + " faces or edges that do not conform";
     }
     if (!refusal_.empty()) {
       report_.closure = o_.target == Target::volume ? "failed" : "skipped";

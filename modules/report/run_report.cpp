@@ -38,6 +38,7 @@ Json volume(const RunReport& r) {
   const auto of = [&](auto field) { return r.volume ? Json((*r.volume).*field) : Json(nullptr); };
   return {{"nodes", of(&VolumeCheck::nodes)},
           {"tets", of(&VolumeCheck::tets)},
+          {"order", of(&VolumeCheck::order)},
           {"inverted", of(&VolumeCheck::inverted)},
           {"dihedral_min_deg", of(&VolumeCheck::dihedral_min_deg)},
           {"dihedral_p1_deg", of(&VolumeCheck::dihedral_p1_deg)},

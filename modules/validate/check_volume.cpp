@@ -27,6 +27,12 @@ void check_input(const TetMesh& mesh) {
     if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
       fail_input("a tet names a point that does not exist", "tet " + std::to_string(t),
                  "write the mesh again");
+  if (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size())
+    fail_input("mid-side nodes for " + std::to_string(mesh.mid.size()) + " of " + std::to_string(mesh.tets.size()) + " tets",
+               "tetrahedral mesh", "write the mesh again");
+  for (std::size_t t = 0; t < mesh.mid.size(); ++t)
+    if (!std::all_of(mesh.mid[t].begin(), mesh.mid[t].end(), fine))
+      fail_input("a mid-side node does not exist", "tet " + std::to_string(t), "write the mesh again");
   for (std::size_t t = 0; t < mesh.faces.size(); ++t)
     if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
       fail_input("a face names a point that does not exist", "face " + std::to_string(t),
@@ -69,6 +75,53 @@ Shape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return s;
 }
 
+/// The Jacobian determinant of a 10-node tet at barycentric coordinates l, from its shape functions.
+double determinant(const std::array<Vec3, 10>& node, const std::array<double, 4>& l) {
+  static constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  std::array<Vec3, 4> d = {};  // derivatives by each barycentric coordinate
+  for (int i = 0; i < 4; ++i) d[i] = (4 * l[i] - 1) * node[i];
+  for (int e = 0; e < 6; ++e) {
+    d[kEnds[e][0]] = d[kEnds[e][0]] + 4 * l[kEnds[e][1]] * node[4 + e];
+    d[kEnds[e][1]] = d[kEnds[e][1]] + 4 * l[kEnds[e][0]] * node[4 + e];
+  }
+  return dot(d[1] - d[0], cross(d[2] - d[0], d[3] - d[0]));
+}
+
+/// Takes the mid-side nodes into account. A tet whose nodes lie in the middle of its edges, but for rounding, is as its
+/// corners are.
+void judge_curved(const TetMesh& mesh, std::size_t t, Shape& shape, char& inverted) {
+  std::array<Vec3, 10> node;
+  for (int i = 0; i < 4; ++i) node[i] = mesh.points[mesh.tets[t][i]];
+  for (int i = 0; i < 6; ++i) node[4 + i] = mesh.points[mesh.mid[t][i]];
+  double size = 0, off = 0;
+  for (int i = 0; i < 4; ++i) size = std::max({size, std::abs(node[i].x), std::abs(node[i].y), std::abs(node[i].z)});
+  static constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  for (int e = 0; e < 6; ++e) off = std::max(off, norm(node[4 + e] - 0.5 * (node[kEnds[e][0]] + node[kEnds[e][1]])));
+  if (off <= 4 * std::numeric_limits<double>::epsilon() * size) return;
+  double least = kInfinity;
+  const auto at = [&](double a, double b, double c, double d) {
+    const double value = determinant(node, {a, b, c, d});
+    least = std::min(least, value);
+    return value;
+  };
+  const auto at_all_corners = [&](double a) {  // a at one corner, the rest shared by the others
+    const double b = (1 - a) / 3;
+    return at(a, b, b, b) + at(b, a, b, b) + at(b, b, a, b) + at(b, b, b, a);
+  };
+  const auto at_all_edges = [&](double a) {
+    const double b = 0.5 - a;
+    at(a, a, b, b), at(a, b, a, b), at(a, b, b, a), at(b, a, a, b), at(b, a, b, a), at(b, b, a, a);
+  };
+  at_all_corners(1), at_all_corners(0), at_all_edges(0.5);
+  at_all_corners(0.5854101966249685);                                    // 4 integration points: CalculiX, Abaqus C3D10
+  at_all_corners(0.7857142857142857), at_all_edges(0.3994035761667992);  // and 11
+  const double integral = -0.8 * at(0.25, 0.25, 0.25, 0.25) + 0.45 * at_all_corners(0.5);  // exact for a cubic
+  const double straight = 6 * shape.volume_mm3;
+  shape.volume_mm3 = integral / 6;
+  if (straight > 0) shape.scaled_jacobian *= least / straight;
+  inverted = inverted || !(least > 0);
+}
+
 void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
   std::vector<Shape> shapes(mesh.tets.size());
   std::vector<char> inverted(mesh.tets.size());
@@ -80,6 +133,7 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
                  &d = mesh.points[v[3]];
       shapes[t] = shape_of(a, b, c, d);
       inverted[t] = exact_orientation(a, b, c, d) <= 0;
+      if (!mesh.mid.empty()) judge_curved(mesh, t, shapes[t], inverted[t]);
     }
   });
   std::map<Label, std::pair<std::size_t, long double>> labels;
@@ -186,6 +240,35 @@ class ConformityCheck {
   VolumeCheck& check_;
 };
 
+/// Tets that share an edge share its node, and no node is on two edges, or a corner.
+std::size_t count_unshared_edges(const TetMesh& mesh) {
+  struct Edge {
+    std::int32_t low, high, mid;
+    bool operator<(const Edge& o) const { return low != o.low ? low < o.low : high != o.high ? high < o.high : mid < o.mid; }
+    bool operator==(const Edge& o) const { return low == o.low && high == o.high && mid == o.mid; }
+  };
+  static constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  std::vector<Edge> edges;
+  edges.reserve(6 * mesh.mid.size());
+  std::vector<char> taken(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.mid.size(); ++t) {
+    for (int e = 0; e < 6; ++e) {
+      const std::int32_t a = mesh.tets[t][kEnds[e][0]], b = mesh.tets[t][kEnds[e][1]];
+      edges.push_back({std::min(a, b), std::max(a, b), mesh.mid[t][e]});
+    }
+    for (const std::int32_t v : mesh.tets[t]) taken[v] = 1;
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const bool again = i > 0 && edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high;
+    bad += again || taken[edges[i].mid];
+    taken[edges[i].mid] = 1;
+  }
+  return bad;
+}
+
 }  // namespace
 
 VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options) {
@@ -193,8 +276,11 @@ VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options)
   VolumeCheck check;
   check.nodes = mesh.points.size();
   check.tets = mesh.tets.size();
+  check.order = mesh.mid.empty() ? 1 : 2;
   measure(mesh, options.threads, check);
   ConformityCheck(mesh, options.list_limit, check).run();
+  check.nonconforming_edges = count_unshared_edges(mesh);
+  check.conforms = check.conforms && check.nonconforming_edges == 0;
   return check;
 }
 

@@ -13,6 +13,7 @@ namespace stackmesh {
 namespace {
 
 const std::vector<std::string> kVolumes = {".vtu", ".msh", ".inp", ".vtk", ".mesh"};
+const std::vector<std::string> kSecondOrderVolumes = {".vtu", ".msh", ".inp", ".vtk"};
 const std::vector<std::string> kSurfaces = {".stl", ".ply", ".obj", ".off", ".vtp"};
 
 int run(const std::string& command) {
@@ -51,17 +52,17 @@ std::vector<std::string> write_sample(const std::string& folder, WorldSpace spac
 }
 
 void write_expectation(const std::string& folder, const std::vector<std::string>& names,
-                       const std::string& space) {
-  const TetMesh mesh = sample_mesh();
+                       const std::string& space, const TetMesh& mesh = sample_mesh()) {
   std::ofstream points(folder + "/points.bin", std::ios::binary);
-  points.write(reinterpret_cast<const char*>(mesh.points.data()),
-               static_cast<std::streamsize>((mesh.points.size() - 1) * sizeof(Vec3)));
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    if (mesh.points[i].x < 1e6)  // the unused one
+      points.write(reinterpret_cast<const char*>(&mesh.points[i]), sizeof(Vec3));
   std::set<std::int32_t> on_surface;
   for (const InterfaceTriangle& t : mesh.faces) on_surface.insert(t.v.begin(), t.v.end());
 
   std::ofstream json(folder + "/expected.json");
   json.precision(17);
-  json << "{\"space\": \"" << space << "\", \"points\": " << mesh.points.size() - 1
+  json << "{\"order\": " << (mesh.mid.empty() ? 1 : 2) << ", \"space\": \"" << space << "\", \"points\": " << mesh.points.size() - 1
        << ", \"surface_points\": " << on_surface.size() << ", \"tets\": " << mesh.tets.size()
        << ", \"triangles\": " << mesh.faces.size() << ",\n\"files\": [";
   for (std::size_t i = 0; i < names.size(); ++i) json << (i > 0 ? ", " : "") << '"' << names[i] << '"';
@@ -114,6 +115,87 @@ INSTANTIATE_TEST_SUITE_P(Spaces, Readback,
                          testing::Values(std::make_pair(WorldSpace::lps, "LPS"),
                                          std::make_pair(WorldSpace::ras, "RAS"),
                                          std::make_pair(WorldSpace::none, "")));
+
+/// Writes the second-order sample; the surface file is that of the corners.
+std::vector<std::string> write_second_order(const std::string& folder, const TetMesh& mesh) {
+  ::mkdir(folder.c_str(), 0777);
+  MeshWriteOptions options;
+  options.labels = sample_labels();
+  std::vector<std::string> names = {"foo.vtp"};
+  AtomicFiles files;
+  write_surface(files, folder + "/foo.vtp", sample_surface(sample_mesh()), options);
+  for (const std::string& e : kSecondOrderVolumes) {
+    write_volume(files, folder + "/foo" + e, mesh, options);
+    names.push_back("foo" + e);
+  }
+  options.msh2 = true;
+  write_volume(files, folder + "/foo2.msh", mesh, options);
+  names.push_back("foo2.msh");
+  files.commit();
+  return names;
+}
+
+TEST(SecondOrderReadback, EveryNodeIsOnItsEdgeInEveryFormat) {
+  const std::string folder = testing::TempDir() + "stackmesh_readback_order2";
+  const TetMesh mesh = second_order_sample();
+  write_expectation(folder, write_second_order(folder, mesh), "LPS", mesh);
+  const int code = read_back(folder);
+  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+  EXPECT_EQ(code, 0) << "see the lines above; files in " << folder;
+}
+
+TEST(SecondOrderReadback, TheScriptSeesTwoNodesExchanged) {
+  const std::string folder = testing::TempDir() + "stackmesh_readback_order2_bad";
+  TetMesh mesh = second_order_sample();
+  for (auto& m : mesh.mid) std::swap(m[4], m[5]);
+  write_expectation(folder, write_second_order(folder, mesh), "LPS", mesh);
+  const int code = read_back(folder);
+  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+  EXPECT_EQ(code, 1);
+}
+
+TEST(SecondOrderReadback, GmshChecksTheFilesAndGivesVtkTheSameOrder) {
+  if (run("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "NOT TESTED: gmsh is not installed";
+  const std::string folder = testing::TempDir() + "stackmesh_gmsh_order2";
+  const TetMesh mesh = second_order_sample();
+  write_second_order(folder, mesh);
+  for (const std::string name : {"foo.msh", "foo2.msh"}) {
+    const std::string log = folder + "/" + name + ".log";
+    EXPECT_EQ(run("gmsh '" + folder + "/" + name + "' -check - >'" + log + "' 2>&1"), 0) << read_file(log);
+    const std::string text = read_file(log);
+    EXPECT_NE(text.find(std::to_string(mesh.points.size() - 1) + " nodes"), std::string::npos) << text;
+    EXPECT_EQ(text.find("Error"), std::string::npos) << text;
+    EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
+  }
+  // Gmsh writes VTK in VTK's order from what it read in its own.
+  ASSERT_EQ(run("cd '" + folder + "' && gmsh foo.msh -save -format vtk -o again.vtk >again.log 2>&1"), 0) << read_file(folder + "/again.log");
+  std::ofstream(folder + "/order.py") << R"(
+import sys
+try:
+    import vtk, numpy as np
+    from vtk.util.numpy_support import vtk_to_numpy
+except ImportError:
+    sys.exit(77)
+reader = vtk.vtkUnstructuredGridReader()
+reader.SetFileName('again.vtk')
+reader.Update()
+grid = reader.GetOutput()
+points = vtk_to_numpy(grid.GetPoints().GetData())
+seen = 0
+for c in range(grid.GetNumberOfCells()):
+    if grid.GetCellType(c) != 24:
+        continue
+    seen += 1
+    ids = [grid.GetCell(c).GetPointId(i) for i in range(10)]
+    for k, (i, j) in enumerate(((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))):
+        a, b, m = points[ids[i]], points[ids[j]], points[ids[4 + k]]
+        assert np.linalg.norm(m - (a + b) / 2) < 0.2 * np.linalg.norm(b - a), (c, k)
+assert seen == 384, seen
+)";
+  const int code = run("cd '" + folder + "' && /usr/bin/python3 order.py");
+  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs python3-vtk9";
+  EXPECT_EQ(code, 0);
+}
 
 TEST(ReadbackScript, SeesASwappedLabelAndAMovedPoint) {
   const std::string folder = testing::TempDir() + "stackmesh_readback_bad";

@@ -76,6 +76,25 @@ inline TetMesh sample_mesh(int n = 4) {
   return mesh;
 }
 
+/// The sample with mid-side nodes, each a little off the middle of its edge, in its own direction.
+inline TetMesh second_order_sample(int n = 4) {
+  TetMesh mesh = sample_mesh(n);
+  std::map<std::array<std::int32_t, 2>, std::int32_t> nodes;
+  mesh.mid.resize(mesh.tets.size());
+  constexpr int edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      const std::int32_t a = mesh.tets[t][edges[k][0]], b = mesh.tets[t][edges[k][1]];
+      const auto [at, fresh] = nodes.insert({{std::min(a, b), std::max(a, b)}, static_cast<std::int32_t>(mesh.points.size())});
+      if (fresh) {
+        const double way = 0.01 * std::sin(static_cast<double>(mesh.points.size()));
+        mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]) + way * Vec3{1, -2, 3});
+      }
+      mesh.mid[t][k] = at->second;
+    }
+  return mesh;
+}
+
 inline InterfaceComplex sample_surface(const TetMesh& mesh) {
   return {mesh.points, mesh.faces};
 }

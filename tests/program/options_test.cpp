@@ -404,4 +404,21 @@ TEST_F(Options, RawSurfaceIsTheStitchedOne) {
 }
 
 }  // namespace
+TEST_F(Options, OrderTwoWritesTenNodeTetsThatOthersRead) {
+  const std::string input = testdata("border.nii.gz");
+  succeeds({"mesh", input, "--no-enhance", "-o", out("a.vtu"), "-o", out("a.msh"), "-o", out("a.inp"), "-o", out("a.vtk"), "-o", out("a.vtp"),
+            "--order", "2", "--report", out("R.json")});
+  const Json r = report();
+  EXPECT_EQ(r["volume"]["order"], 2);
+  EXPECT_EQ(r["volume"]["inverted"], 0);
+  EXPECT_EQ(r["volume"]["closure"], "verified");
+  const program::Ended read = python("readback.py", {"--report", out("R.json"), out("a.vtu"), out("a.msh"), out("a.inp"), out("a.vtk"), out("a.vtp")});
+  if (read.code == 77 || read.code == 127) GTEST_SKIP() << "NOT TESTED: needs python3-vtk9 and python3-meshio";
+  EXPECT_EQ(read.code, 0) << read.out;
+}
+
+TEST_F(Options, OrderTwoIsRefusedForMedit) {
+  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.mesh"), "--order", "2"}, {"Medit", "a.mesh"});
+}
+
 }  // namespace program

@@ -11,6 +11,7 @@ FOLDER/expected.json holds
   files             names of the files to check, all of one mesh
   space             "LPS", "RAS" or ""
   points, surface_points, tets, triangles
+  order             2 when the cells have mid-side nodes; each must lie near the middle of its edge, in VTK's order
   labels            [{label, name, set, tets, volume}]   set: name of the element set in decks
   pairs             [{below, above, name, triangles}]
 and FOLDER/points.bin the points of the volume as raw float64 x, y, z; every format that holds doubles must give
@@ -56,6 +57,21 @@ class Mesh:
         self.tets, self.labels, self.precision, self.space = tets, labels, precision, space
 
 
+def without_mids(points, tets, triangles, order):
+    """The corners of the cells, once their mid-side nodes were found near the middles of the edges."""
+    if order == 1:
+        return tets, triangles
+    points = np.asarray(points, float)
+    for cells, corners, edges in ((tets, 4, ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))),
+                                  (triangles, 3, ((0, 1), (1, 2), (2, 0)))):
+        need(cells.shape[1] == corners + len(edges), f"{cells.shape[1]} nodes a cell")
+        for k, (i, j) in enumerate(edges):
+            a, b, m = points[cells[:, i]], points[cells[:, j]], points[cells[:, corners + k]]
+            off = np.linalg.norm(m - (a + b) / 2, axis=1) / np.linalg.norm(b - a, axis=1)
+            need(off.max() < 0.2, f"node {corners + k} is not on edge {i}{j}")
+    return tets[:, :4], triangles[:, :3]
+
+
 def text_of(path):
     with open(path, "rb") as file:
         return file.read().decode("latin-1")
@@ -91,19 +107,22 @@ def vtk_cells(cells):
     return offsets, corners
 
 
-def vtk_grid(reader, path):
+def vtk_grid(reader, path, order=1):
     grid = vtk_output(reader, path)
     types = vtk_to_numpy(grid.GetCellTypesArray())
     offsets, corners = vtk_cells(grid.GetCells())
     starts = offsets[:-1]
-    need(set(types) == {5, 10}, f"cell types {set(types)}")
+    tet_type, tri_type = ((10, 5), (24, 22))[order - 1]
+    need(set(types) == {tet_type, tri_type}, f"cell types {set(types)}")
     data = {n: vtk_to_numpy(grid.GetCellData().GetArray(n)) for n in ("label", "label_below", "label_above")}
-    tet, tri = types == 10, types == 5
+    tet, tri = types == tet_type, types == tri_type
     need((data["label"][tri] == 0).all(), "a triangle has a tet label")
     need((data["label_below"][tet] == -1).all() and (data["label_above"][tet] == -1).all(), "a tet has a pair")
-    return Mesh(vtk_to_numpy(grid.GetPoints().GetData()), corners[starts[tri][:, None] + np.arange(3)],
-                np.column_stack((data["label_below"][tri], data["label_above"][tri])),
-                corners[starts[tet][:, None] + np.arange(4)], data["label"][tet], space=vtk_space(grid))
+    points = vtk_to_numpy(grid.GetPoints().GetData())
+    tets, triangles = without_mids(points, corners[starts[tet][:, None] + np.arange((4, 10)[order - 1])],
+                                   corners[starts[tri][:, None] + np.arange((3, 6)[order - 1])], order)
+    return Mesh(points, triangles, np.column_stack((data["label_below"][tri], data["label_above"][tri])), tets,
+                data["label"][tet], space=vtk_space(grid))
 
 
 def vtk_poly(reader, path, labelled=False, precision=EXACT, space=None):
@@ -126,27 +145,32 @@ def meshio_volume(path, expected):
     """.vtu .vtk .msh .mesh .inp through meshio."""
     mesh = meshio.read(path)
     ending = os.path.splitext(path)[1]
-    tets = np.concatenate([d for _, d in meshio_blocks(mesh, "tetra")])
-    triangles = [d for _, d in meshio_blocks(mesh, "triangle")]
-    triangles = np.concatenate(triangles) if triangles else np.empty((0, 3), int)
+    order = expected.get("order", 1)
+    tetra, triangle = (("tetra", "triangle"), ("tetra10", "triangle6"))[order - 1]
+    all_tets = np.concatenate([d for _, d in meshio_blocks(mesh, tetra)])
+    triangles = [d for _, d in meshio_blocks(mesh, triangle)]
+    triangles = np.concatenate(triangles) if triangles else np.empty((0, (3, 6)[order - 1]), int)
+    if order == 2 and ending == ".inp":
+        triangles = all_tets[:, [0, 1, 2, 4, 5, 6]]  # a deck has no triangles: any faces will do
+    tets, triangles = without_mids(mesh.points, all_tets, triangles, order)
 
     def data(key, kind):
         return np.concatenate([np.asarray(mesh.cell_data[key][i]) for i, _ in meshio_blocks(mesh, kind)])
 
     if ending in (".vtu", ".vtk"):
-        pairs = np.column_stack((data("label_below", "triangle"), data("label_above", "triangle")))
+        pairs = np.column_stack((data("label_below", triangle), data("label_above", triangle)))
         space = marked_space(path)
         if ending == ".vtu":
             field = mesh.field_data.get("SPACE")
             need(("" if field is None else "".join(map(chr, field))) == space, "field data and comment differ")
-        return Mesh(mesh.points, triangles, pairs, tets, data("label", "tetra"), space=space)
+        return Mesh(mesh.points, triangles, pairs, tets, data("label", tetra), space=space)
     if ending == ".msh":
         names = {(int(dim), int(tag)): name for name, (tag, dim) in mesh.field_data.items()}
-        labels = data("gmsh:physical", "tetra")
+        labels = data("gmsh:physical", tetra)
         for row in expected["labels"]:
             need(names.get((3, row["label"])) == row["name"], f"physical volume of label {row['label']}")
         by_name = {row["name"]: (row["below"], row["above"]) for row in expected["pairs"]}
-        pairs = np.array([by_name[names[2, int(t)]] for t in data("gmsh:physical", "triangle")])
+        pairs = np.array([by_name[names[2, int(t)]] for t in data("gmsh:physical", triangle)])
         return Mesh(mesh.points, triangles, pairs, tets, labels, space=marked_space(path))
     if ending == ".mesh":
         by_reference = {int(r): (int(b), int(a)) for r, b, a in
@@ -155,13 +179,15 @@ def meshio_volume(path, expected):
         return Mesh(mesh.points, triangles, pairs, tets, data("medit:ref", "tetra"), space=marked_space(path))
     # A deck: labels are element sets, interfaces are faces of elements.
     labels = np.zeros(len(tets), int)
-    firsts = np.cumsum([0] + [len(d) for _, d in meshio_blocks(mesh, "tetra")])
+    firsts = np.cumsum([0] + [len(d) for _, d in meshio_blocks(mesh, tetra)])
     for row in expected["labels"]:
         need(row["set"] in mesh.cell_sets, f"no element set {row['set']}")
         for block, ids in enumerate(mesh.cell_sets[row["set"]]):
             if ids is not None and len(ids):
                 labels[firsts[block] + np.asarray(ids, int)] = row["label"]
     text = text_of(path)
+    mids = {frozenset((int(t[i]), int(t[j]))): int(t[4 + k]) for t in all_tets if order == 2
+            for k, (i, j) in enumerate(((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)))}
     faces = {1: (0, 2, 1), 2: (0, 1, 3), 3: (1, 2, 3), 4: (2, 0, 3)}  # corners seen from outside
     triangles, pairs = [], []
     for below, above, body in re.findall(r"\*\* labels (\d+)\|(\d+):[^\n]*\n\*NSET[^*]*\*SURFACE, NAME=\w+, TYPE=ELEMENT\n([^*]*)",
@@ -172,6 +198,9 @@ def meshio_volume(path, expected):
             pairs.append((int(below), int(above)))
     for below, above, body in re.findall(r"\*\* labels (\d+)\|(\d+):[^\n]*\n\*NSET, NSET=\w+\n([^*]*)", text):
         mine = {int(v) for t, p in zip(triangles, pairs) if p == (int(below), int(above)) for v in t}
+        if order == 2:
+            mine |= {mids[frozenset((int(t[i]), int(t[j])))] for t, p in zip(triangles, pairs)
+                     if p == (int(below), int(above)) for i, j in ((0, 1), (1, 2), (2, 0))}
         need({int(n) - 1 for n in re.findall(r"\d+", body)} == mine, f"node set of {below}|{above}")
     need(max(len(f.strip()) for line in text.split("*NODE, NSET=NALL\n")[1].split("*")[0].splitlines()
              for f in line.split(",")) <= 20, "a number is wider than 20 characters")
@@ -294,11 +323,12 @@ def check_label_file(path, expected):
 def readings(path, expected):
     """(reader's name, function that reads) for each way to read the file."""
     ending = os.path.splitext(path)[1]
+    order = expected.get("order", 1)
     by_meshio = ("meshio", lambda: meshio_volume(path, expected))
     surface_by_meshio = ("meshio", lambda: meshio_surface(path, expected))
     return {
-        ".vtu": [("VTK", lambda: vtk_grid(vtk.vtkXMLUnstructuredGridReader(), path)), by_meshio],
-        ".vtk": [("VTK", lambda: vtk_grid(vtk.vtkUnstructuredGridReader(), path)), by_meshio],
+        ".vtu": [("VTK", lambda: vtk_grid(vtk.vtkXMLUnstructuredGridReader(), path, order)), by_meshio],
+        ".vtk": [("VTK", lambda: vtk_grid(vtk.vtkUnstructuredGridReader(), path, order)), by_meshio],
         ".msh": [by_meshio], ".mesh": [by_meshio], ".inp": [by_meshio],
         ".vtp": [("VTK", lambda: vtk_poly(vtk.vtkXMLPolyDataReader(), path, labelled=True))],
         ".ply": [("numpy", lambda: own_ply(path)),
@@ -319,17 +349,18 @@ def from_folder(folder):
 def from_report(path, files):
     with open(path) as file:
         report = json.load(file)
+    order = report["volume"].get("order", 1)
     names = {0: "background"}
     labels = []
     for row in report["labels"]:
         name = names[row["label"]] = row["name"] or f"label_{row['label']}"
         labels.append({"label": row["label"], "name": name, "set": re.sub(r"\W", "_", name), "tets": row["tets"],
-                       "volume": row["tet_volume_mm3"]})
+                       "volume": row["tet_volume_mm3" if order == 1 else "surface_volume_mm3"]})  # within straight sides
     surface = vtk_poly(vtk.vtkXMLPolyDataReader(), next(f for f in files if f.endswith(".vtp")), labelled=True)
     pairs, counts = np.unique(surface.pairs, axis=0, return_counts=True)
-    grid = vtk_grid(vtk.vtkXMLUnstructuredGridReader(), next(f for f in files if f.endswith(".vtu")))
+    grid = vtk_grid(vtk.vtkXMLUnstructuredGridReader(), next(f for f in files if f.endswith(".vtu")), order)
     space = report["input"]["space"]
-    return {"files": files, "space": "" if space == "none" else space.upper(), "points": report["volume"]["nodes"],
+    return {"files": files, "order": order, "space": "" if space == "none" else space.upper(), "points": report["volume"]["nodes"],
             "surface_points": report["surface"]["vertices"], "tets": report["volume"]["tets"],
             "triangles": report["surface"]["triangles"], "labels": labels,
             "pairs": [{"below": int(b), "above": int(a), "name": f"{names[b]}|{names[a]}", "triangles": int(n)}

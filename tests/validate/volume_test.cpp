@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <map>
 
 #include "base/error.h"
 #include "shapes.h"
@@ -158,6 +160,67 @@ TEST(CheckVolume, ThreeTetsOnAFaceAndDuplicatesDoNotConform) {
   m.tets.push_back(m.tets[0]);
   m.labels.push_back(1);
   EXPECT_EQ(nonconforming(m), 4u);
+}
+
+/// two_tets() with a node in the middle of each edge.
+TetMesh two_curved_tets() {
+  TetMesh m = two_tets();
+  std::map<std::pair<int, int>, int> nodes;
+  m.mid.resize(m.tets.size());
+  constexpr int edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+  for (std::size_t t = 0; t < m.tets.size(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      const int a = m.tets[t][edges[k][0]], b = m.tets[t][edges[k][1]];
+      const auto [at, fresh] = nodes.insert({std::minmax(a, b), static_cast<int>(m.points.size())});
+      if (fresh) m.points.push_back(0.5 * (m.points[a] + m.points[b]));
+      m.mid[t][k] = at->second;
+    }
+  return m;
+}
+
+TEST(CheckVolume, StraightSecondOrderTetsAreAsTheirCorners) {
+  const VolumeCheck linear = check_volume(two_tets()), curved = check_volume(two_curved_tets());
+  EXPECT_EQ(curved.order, 2);
+  EXPECT_EQ(curved.inverted, 0u);
+  EXPECT_TRUE(curved.conforms);
+  EXPECT_EQ(curved.scaled_jacobian_min, linear.scaled_jacobian_min);
+  EXPECT_EQ(curved.labels[0].volume_mm3, linear.labels[0].volume_mm3);
+}
+
+TEST(CheckVolume, ABulgeAddsItsVolume) {
+  // The edge along x is bent by h = 0.1 towards -y: y = l2 - 4 h l0 l1, so that the determinant is 1 + 4 h l1, and l1 has
+  // the integral 1/24 over the tet.
+  TetMesh m = one_tet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
+  m.points.insert(m.points.end(), {{0.5, -0.1, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}, {0, 0, 0.5}, {0.5, 0, 0.5}, {0, 0.5, 0.5}});
+  m.mid = {{4, 5, 6, 7, 8, 9}};
+  const VolumeCheck c = check_volume(m);
+  EXPECT_EQ(c.inverted, 0u);
+  EXPECT_NEAR(c.labels[0].volume_mm3, 1 / 6.0 + 0.1 * 4 / 24, 1e-15);
+}
+
+TEST(CheckVolume, ANodePastTheOppositeFaceInvertsTheElement) {
+  TetMesh m = two_curved_tets();
+  const auto& tet = m.tets[0];
+  const Vec3 opposite = 0.5 * (m.points[tet[2]] + m.points[tet[3]]);
+  Vec3& node = m.points[m.mid[0][0]];
+  const Vec3 middle = node;
+  node = middle + 0.2 * (opposite - middle);
+  EXPECT_EQ(check_volume(m).inverted, 0u);
+  node = middle + 0.9 * (opposite - middle);
+  EXPECT_GE(check_volume(m).inverted, 1u);
+  EXPECT_LT(check_volume(m).scaled_jacobian_min, 0);
+}
+
+TEST(CheckVolume, NeighboursMustShareTheNodesOfTheirEdges) {
+  TetMesh m = two_curved_tets();
+  m.points.push_back(m.points[m.mid[1][0]]);
+  m.mid[1][0] = static_cast<int>(m.points.size()) - 1;  // an own copy of the node
+  const bool shared = std::count(m.tets[0].begin(), m.tets[0].end(), m.tets[1][0]) && std::count(m.tets[0].begin(), m.tets[0].end(), m.tets[1][1]);
+  EXPECT_EQ(check_volume(m).nonconforming_edges, shared ? 1u : 0u);
+  EXPECT_EQ(check_volume(m).conforms, !shared);
+  TetMesh twice = two_curved_tets();
+  twice.mid[0][3] = twice.mid[0][2];
+  EXPECT_FALSE(check_volume(twice).conforms);
 }
 
 TEST(CheckVolume, BrokenArraysAreRefused) {

@@ -52,6 +52,40 @@ void add_box(InterfaceComplex& complex, Vec3 low, Vec3 high, Label inside, Label
   add_quad(complex, o + 1, o + 3, o + 7, o + 5, inside, outside);
 }
 
+InterfaceComplex sphere(int levels, double radius, Label inside, Label outside) {
+  InterfaceComplex c;
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  for (const double a : {-1.0, 1.0})
+    for (const double b : {-g, g})
+      for (const Vec3 p : {Vec3{0, a, b}, Vec3{a, b, 0}, Vec3{b, 0, a}}) c.points.push_back(p);
+  for (int i = 0; i < 12; ++i)  // faces: three points two apart from each other
+    for (int j = i + 1; j < 12; ++j)
+      for (int k = j + 1; k < 12; ++k) {
+        const Vec3 p = c.points[i], q = c.points[j], r = c.points[k];
+        if (std::max({norm(p - q), norm(q - r), norm(r - p)}) > 2.1) continue;
+        const bool outward = dot(p, cross(q, r)) > 0;
+        c.triangles.push_back({{i, outward ? j : k, outward ? k : j}, inside, outside});
+      }
+  for (int level = 0; level < levels; ++level) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto [at, fresh] = middles.insert({std::minmax(a, b), static_cast<int>(c.points.size())});
+      if (fresh) c.points.push_back(0.5 * (c.points[a] + c.points[b]));
+      return at->second;
+    };
+    std::vector<InterfaceTriangle> finer;
+    for (const auto& t : c.triangles) {
+      const int ab = middle(t.v[0], t.v[1]), bc = middle(t.v[1], t.v[2]), ca = middle(t.v[2], t.v[0]);
+      for (const auto& v : {std::array{t.v[0], ab, ca}, std::array{t.v[1], bc, ab}, std::array{t.v[2], ca, bc}, std::array{ab, bc, ca}})
+        finer.push_back({{v[0], v[1], v[2]}, inside, outside});
+    }
+    c.triangles = finer;
+    for (Vec3& p : c.points) p = (1 / norm(p)) * p;
+  }
+  for (Vec3& p : c.points) p = (radius / norm(p)) * p;
+  return c;
+}
+
 std::map<Label, double> volumes(const TetMesh& mesh) {
   std::map<Label, double> out;
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {

@@ -18,6 +18,9 @@ void add_quad(InterfaceComplex& complex, int a, int b, int c, int d, Label below
 /// Adds the surface of an axis-aligned box full of `inside` within `outside`, with its own eight corners.
 void add_box(InterfaceComplex& complex, Vec3 low, Vec3 high, Label inside, Label outside = 0);
 
+/// An icosahedron, each triangle cut in four `levels` times, with its corners on a sphere about the origin.
+InterfaceComplex sphere(int levels, double radius, Label inside = 1, Label outside = 0);
+
 std::map<Label, double> volumes(const TetMesh& mesh);
 
 /// Checks what a filled mesh must be, sharing no code with what is tested: points kept to the bit, all tets

@@ -1,0 +1,377 @@
+#include "volume/raise_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace stackmesh {
+namespace {
+
+Vec3 unit(Vec3 v) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : Vec3{};
+}
+
+/// All edges of the tets, each once; numbered by (smaller end, larger end).
+struct Edges {
+  std::vector<std::int64_t> begin;  // of each point as smaller end
+  std::vector<std::int32_t> larger;
+
+  explicit Edges(const TetMesh& mesh) : begin(mesh.points.size() + 1, 0) {
+    const auto each = [&](auto visit) {
+      for (const auto& t : mesh.tets)
+        for (const auto& e : kTetEdges) visit(std::min(t[e[0]], t[e[1]]), std::max(t[e[0]], t[e[1]]));
+    };
+    each([&](std::int32_t low, std::int32_t) { ++begin[low + 1]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<std::int32_t> all(6 * mesh.tets.size());
+    std::vector<std::int64_t> next(begin.begin(), begin.end() - 1);
+    each([&](std::int32_t low, std::int32_t high) { all[next[low]++] = high; });
+    larger.reserve(2 * mesh.tets.size());
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+      const auto from = all.begin() + begin[p], to = all.begin() + begin[p + 1];
+      std::sort(from, to);
+      begin[p] = static_cast<std::int64_t>(larger.size());
+      larger.insert(larger.end(), from, std::unique(from, to));
+    }
+    begin.back() = static_cast<std::int64_t>(larger.size());
+  }
+
+  /// -1 when no tet has it.
+  std::int64_t find(std::int32_t a, std::int32_t b) const {
+    if (a > b) std::swap(a, b);
+    const auto from = larger.begin() + begin[a], to = larger.begin() + begin[a + 1];
+    const auto at = std::lower_bound(from, to, b);
+    return at == to || *at != b ? -1 : at - larger.begin();
+  }
+};
+
+/// Where the surface wants the nodes of its edges.
+class SurfaceCurves {
+ public:
+  SurfaceCurves(const TetMesh& mesh, const Edges& edges, double ridge_deg)
+      : mesh_(mesh), ridge_cosine_(std::cos(ridge_deg * 3.14159265358979323846 / 180)) {
+    measure_triangles();
+    collect_edges(edges);
+    classify();
+    collect_normals();
+    collect_tangents();
+  }
+
+  /// The way of each node from the middle of its edge: visit(edge, offset), for edges that are not straight.
+  template <class Visit>
+  void each_offset(Visit visit) const {
+    for (const SurfaceEdge& e : edges_) {
+      if (e.kind == Kind::straight) continue;
+      const Vec3 d = mesh_.points[e.q] - mesh_.points[e.p];
+      const Vec3 offset = e.kind == Kind::smooth ? across(e, d) : along(e, d);
+      if (norm(offset) > 1e-12 * norm(d)) visit(e.edge, offset);
+    }
+  }
+
+ private:
+  enum class Kind { straight, smooth, curve };
+  struct SurfaceEdge {
+    std::int64_t edge = 0;
+    std::int32_t p = 0, q = 0;              // ends
+    std::int32_t side[2] = {-1, -1};        // triangles
+    int count = 0;                          // of triangles
+    Kind kind = Kind::curve;
+  };
+
+  void measure_triangles() {
+    normals_.resize(mesh_.faces.size());
+    planes_.resize(mesh_.faces.size());
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+      const InterfaceTriangle& f = mesh_.faces[i];
+      const Vec3 &a = mesh_.points[f.v[0]], &b = mesh_.points[f.v[1]], &c = mesh_.points[f.v[2]];
+      normals_[i] = unit(f.below < f.above ? cross(b - a, c - a) : cross(c - a, b - a));
+      planes_[i] = a.x == b.x && b.x == c.x ? 1 : a.y == b.y && b.y == c.y ? 2 : a.z == b.z && b.z == c.z ? 3 : 0;
+    }
+  }
+
+  void collect_edges(const Edges& edges) {
+    struct Side {
+      std::int64_t edge;
+      std::int32_t triangle;
+    };
+    std::vector<Side> sides;
+    sides.reserve(3 * mesh_.faces.size());
+    for (std::size_t i = 0; i < mesh_.faces.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const std::int64_t edge = edges.find(mesh_.faces[i].v[k], mesh_.faces[i].v[(k + 1) % 3]);
+        if (edge >= 0) sides.push_back({edge, static_cast<std::int32_t>(i)});
+      }
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle; });
+    for (const Side& s : sides) {
+      if (edges_.empty() || edges_.back().edge != s.edge) {
+        SurfaceEdge e;
+        e.edge = s.edge;
+        const auto low = std::upper_bound(edges.begin.begin(), edges.begin.end(), s.edge) - edges.begin.begin() - 1;
+        e.p = static_cast<std::int32_t>(low), e.q = edges.larger[s.edge];
+        edges_.push_back(e);
+      }
+      SurfaceEdge& e = edges_.back();
+      if (e.count < 2) e.side[e.count] = s.triangle;
+      ++e.count;
+    }
+  }
+
+  void classify() {
+    for (SurfaceEdge& e : edges_) {
+      e.kind = Kind::curve;
+      if (e.count != 2) continue;
+      const InterfaceTriangle &s = mesh_.faces[e.side[0]], &t = mesh_.faces[e.side[1]];
+      const bool same = std::min(s.below, s.above) == std::min(t.below, t.above) &&
+                        std::max(s.below, s.above) == std::max(t.below, t.above);
+      const double cosine = dot(normals_[e.side[0]], normals_[e.side[1]]);
+      if (same && planes_[e.side[0]] != 0 && planes_[e.side[0]] == planes_[e.side[1]]) e.kind = Kind::straight;
+      else if (same && planes_[e.side[0]] == 0 && planes_[e.side[1]] == 0 && cosine >= ridge_cosine_) e.kind = Kind::smooth;
+    }
+  }
+
+  static int corner(const InterfaceTriangle& t, std::int32_t v) { return t.v[0] == v ? 0 : t.v[1] == v ? 1 : 2; }
+
+  std::int32_t root(std::int32_t c) {
+    while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
+    return c;
+  }
+
+  /// A normal for each point and each smooth sheet through it: the corners of triangles that meet in edges which
+  /// are not sharp share it.
+  void collect_normals() {
+    parent_.resize(3 * mesh_.faces.size());
+    std::iota(parent_.begin(), parent_.end(), 0);
+    for (const SurfaceEdge& e : edges_)
+      if (e.kind != Kind::curve)
+        for (const std::int32_t v : {e.p, e.q}) {
+          const auto a = root(3 * e.side[0] + corner(mesh_.faces[e.side[0]], v));
+          const auto b = root(3 * e.side[1] + corner(mesh_.faces[e.side[1]], v));
+          parent_[std::max(a, b)] = std::min(a, b);
+        }
+    sheet_normals_.assign(parent_.size(), Vec3{});
+    for (std::size_t i = 0; i < mesh_.faces.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const auto& v = mesh_.faces[i].v;
+        const Vec3 a = unit(mesh_.points[v[(k + 1) % 3]] - mesh_.points[v[k]]);
+        const Vec3 b = unit(mesh_.points[v[(k + 2) % 3]] - mesh_.points[v[k]]);
+        const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0));
+        Vec3& n = sheet_normals_[root(static_cast<std::int32_t>(3 * i) + k)];
+        n = n + angle * normals_[i];
+      }
+    for (Vec3& n : sheet_normals_) n = unit(n);
+    for (std::size_t c = 0; c < parent_.size(); ++c) parent_[c] = root(static_cast<std::int32_t>(c));
+  }
+
+  /// The direction of a sharp edge or junction at each point that two of them share without a corner.
+  void collect_tangents() {
+    struct Ends {
+      std::int32_t other[2] = {-1, -1};
+      int count = 0;
+    };
+    std::vector<Ends> ends(mesh_.points.size());
+    for (const SurfaceEdge& e : edges_)
+      if (e.kind == Kind::curve)
+        for (const auto& [v, w] : {std::pair(e.p, e.q), std::pair(e.q, e.p)}) {
+          if (ends[v].count < 2) ends[v].other[ends[v].count] = w;
+          ++ends[v].count;
+        }
+    tangents_.assign(mesh_.points.size(), Vec3{});
+    for (std::size_t v = 0; v < ends.size(); ++v) {
+      if (ends[v].count != 2) continue;
+      const Vec3 back = mesh_.points[v] - mesh_.points[ends[v].other[0]], on = mesh_.points[ends[v].other[1]] - mesh_.points[v];
+      if (dot(unit(back), unit(on)) < ridge_cosine_) continue;
+      const double a = norm(back), b = norm(on);  // the circle's tangent: the nearer neighbour counts more
+      tangents_[v] = unit(b * unit(back) + a * unit(on));
+    }
+  }
+
+  /// Both ways are exact on a circle: the height of an arc over its chord.
+  Vec3 across(const SurfaceEdge& e, Vec3 d) const {
+    const InterfaceTriangle& t = mesh_.faces[e.side[0]];
+    const Vec3 n = sheet_normals_[parent_[3 * e.side[0] + corner(t, e.p)]];
+    const Vec3 m = sheet_normals_[parent_[3 * e.side[0] + corner(t, e.q)]];
+    const double length = norm(d);
+    const auto half_tangent = [&](Vec3 normal) { return std::tan(std::asin(std::clamp(dot(d, normal) / length, -0.9, 0.9)) / 2); };
+    return (length / 4 * (half_tangent(m) - half_tangent(n))) * unit(n + m);
+  }
+
+  Vec3 along(const SurfaceEdge& e, Vec3 d) const {
+    const auto tangent = [&](std::int32_t v) {
+      const Vec3 t = tangents_[v];
+      return dot(t, t) == 0 ? unit(d) : dot(t, d) < 0 ? -1.0 * t : t;
+    };
+    const Vec3 s = tangent(e.p), t = tangent(e.q);
+    const double cosine = std::max(0.0, dot(s + t, unit(d)) / 2);
+    return (norm(d) / (4 * (1 + cosine))) * (s - t);
+  }
+
+  const TetMesh& mesh_;
+  const double ridge_cosine_;
+  std::vector<Vec3> normals_;  // of triangles, out of the smaller label
+  std::vector<char> planes_;   // 1, 2, 3: the triangle lies in a plane across x, y, z
+  std::vector<SurfaceEdge> edges_;
+  std::vector<std::int32_t> parent_;  // of triangle corners: the smallest of their sheet
+  std::vector<Vec3> sheet_normals_, tangents_;
+};
+
+/// The smallest Bernstein coefficient of an element's Jacobian determinant, over the straight element's determinant.
+double determinant_bound(const std::array<Vec3, 4>& corner, const std::array<Vec3, 6>& mid) {
+  static constexpr int kMid[4][4] = {{-1, 0, 2, 3}, {0, -1, 1, 4}, {2, 1, -1, 5}, {3, 4, 5, -1}};
+  // Gradients at the corners: they are linear in between.
+  Vec3 g[3][4];
+  for (int c = 0; c < 4; ++c) {
+    const auto by = [&](int i) {  // derivative by the i-th barycentric coordinate at corner c, halved
+      return i == c ? 1.5 * corner[c] : 2.0 * mid[kMid[i][c]] - 0.5 * corner[i];
+    };
+    const Vec3 first = by(0);
+    for (int k = 0; k < 3; ++k) g[k][c] = 2.0 * (by(k + 1) - first);
+  }
+  const double straight = dot(corner[1] - corner[0], cross(corner[2] - corner[0], corner[3] - corner[0]));
+  Vec3 product[4][4];
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) product[i][j] = cross(g[1][i], g[2][j]);
+  const auto term = [&](int i, int j, int k) { return dot(g[0][i], product[j][k]); };
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i)
+    for (int j = i; j < 4; ++j)
+      for (int k = j; k < 4; ++k)
+        smallest = std::min(smallest, term(i, j, k) + term(i, k, j) + term(j, i, k) + term(j, k, i) + term(k, i, j) + term(k, j, i));
+  return smallest / 6 / straight;
+}
+
+class Raiser {
+ public:
+  Raiser(TetMesh mesh, const OrderOptions& options) : o_(options), edges_(mesh), mesh_(std::move(mesh)) {}
+
+  OrderResult run() {
+    place_straight();
+    OrderResult result;
+    if (o_.follow_surface) {
+      bend();
+      hold_back();
+      for (const double s : share_) {
+        result.curved_nodes += s > 0;
+        result.limited_nodes += s < 1;
+      }
+      result.jacobian_min_rel = std::min(1.0, bound_);
+    }
+    result.mesh = std::move(mesh_);
+    return result;
+  }
+
+ private:
+  void place_straight() {
+    first_ = static_cast<std::int32_t>(mesh_.points.size());
+    mesh_.points.resize(mesh_.points.size() + edges_.larger.size());
+    for (std::int32_t p = 0; p < first_; ++p)
+      for (std::int64_t e = edges_.begin[p]; e < edges_.begin[p + 1]; ++e)
+        mesh_.points[first_ + e] = middle(p, edges_.larger[e]);
+    mesh_.mid.resize(mesh_.tets.size());
+    parallel_for((mesh_.tets.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
+      for (std::size_t t = chunk * kChunk; t < std::min(mesh_.tets.size(), (chunk + 1) * kChunk); ++t)
+        for (int k = 0; k < 6; ++k)
+          mesh_.mid[t][k] =
+              first_ + static_cast<std::int32_t>(edges_.find(mesh_.tets[t][kTetEdges[k][0]], mesh_.tets[t][kTetEdges[k][1]]));
+    });
+  }
+
+  Vec3 middle(std::int32_t p, std::int32_t q) const { return 0.5 * (mesh_.points[p] + mesh_.points[q]); }
+
+  void bend() {
+    bent_of_.assign(edges_.larger.size(), -1);
+    SurfaceCurves(mesh_, edges_, o_.ridge_deg).each_offset([&](std::int64_t edge, Vec3 offset) {
+      bent_of_[edge] = static_cast<std::int32_t>(bent_.size());
+      bent_.push_back(static_cast<std::int32_t>(edge));
+      straight_.push_back(mesh_.points[first_ + edge]);
+      offsets_.push_back(offset);
+      mesh_.points[first_ + edge] = straight_.back() + offset;
+    });
+    share_.assign(bent_.size(), 1);
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
+      if (std::any_of(mesh_.mid[t].begin(), mesh_.mid[t].end(), [&](std::int32_t m) { return bent_of_[m - first_] >= 0; }))
+        curved_tets_.push_back(static_cast<std::int32_t>(t));
+  }
+
+  double bound_of(std::int32_t tet) const {
+    std::array<Vec3, 4> corner;
+    std::array<Vec3, 6> mid;
+    for (int i = 0; i < 4; ++i) corner[i] = mesh_.points[mesh_.tets[tet][i]];
+    for (int i = 0; i < 6; ++i) mid[i] = mesh_.points[mesh_.mid[tet][i]];
+    return determinant_bound(corner, mid);
+  }
+
+  /// Halves the way of all bent nodes of an element that is bent too much, until none is. Elements whose nodes are all
+  /// back at their middles are left.
+  void hold_back() {
+    std::vector<std::int32_t> suspects = curved_tets_;
+    std::vector<double> bounds(mesh_.tets.size(), 1);
+    std::vector<char> moved(bent_.size());
+    while (!suspects.empty()) {
+      parallel_for((suspects.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
+        for (std::size_t i = chunk * kChunk; i < std::min(suspects.size(), (chunk + 1) * kChunk); ++i)
+          bounds[suspects[i]] = bound_of(suspects[i]);
+      });
+      std::fill(moved.begin(), moved.end(), 0);
+      bool any = false;
+      for (const std::int32_t t : suspects)
+        if (!(bounds[t] >= o_.jacobian_rel))
+          for (const std::int32_t m : mesh_.mid[t])
+            if (const std::int32_t b = bent_of_[m - first_]; b >= 0 && share_[b] > 0) moved[b] = 1, any = true;
+      if (!any) break;
+      for (std::size_t b = 0; b < bent_.size(); ++b) {
+        if (!moved[b]) continue;
+        share_[b] = share_[b] > 1.0 / 32 ? share_[b] / 2 : 0;
+        mesh_.points[first_ + bent_[b]] = share_[b] > 0 ? straight_[b] + share_[b] * offsets_[b] : straight_[b];
+      }
+      suspects.clear();
+      for (const std::int32_t t : curved_tets_)
+        if (std::any_of(mesh_.mid[t].begin(), mesh_.mid[t].end(),
+                        [&](std::int32_t m) { return bent_of_[m - first_] >= 0 && moved[bent_of_[m - first_]]; }))
+          suspects.push_back(t);
+    }
+    for (const std::int32_t t : curved_tets_) bound_ = std::min(bound_, bounds[t]);
+  }
+
+  static constexpr std::size_t kChunk = 1 << 12;
+  const OrderOptions& o_;
+  const Edges edges_;
+  TetMesh mesh_;
+  std::int32_t first_ = 0;              // mid-side node of edge 0
+  std::vector<std::int32_t> bent_of_;   // of an edge, -1: straight
+  std::vector<std::int32_t> bent_;      // edges
+  std::vector<Vec3> straight_, offsets_;
+  std::vector<double> share_;           // of the offset
+  std::vector<std::int32_t> curved_tets_;
+  double bound_ = 1;
+};
+
+void check_input(const TetMesh& mesh, const OrderOptions& options) {
+  if (!mesh.mid.empty()) fail_input("the elements are of second order already", "tetrahedral mesh", "leave it as it is");
+  const auto count = static_cast<std::int64_t>(mesh.points.size());
+  const auto fine = [&](std::int32_t v) { return v >= 0 && v < count; };
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
+      fail_input("a tet names a point that does not exist", "tet " + std::to_string(t), "write the mesh again");
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t)
+    if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
+      fail_input("a face names a point that does not exist", "face " + std::to_string(t), "write the mesh again");
+  if (!(options.jacobian_rel > 0 && options.jacobian_rel < 1)) fail_internal("jacobian_rel is not between 0 and 1", "raise_order");
+}
+
+}  // namespace
+
+OrderResult raise_order(TetMesh mesh, const OrderOptions& options) {
+  check_input(mesh, options);
+  return Raiser(std::move(mesh), options).run();
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+
+#include "model/tet_mesh.h"
+
+namespace stackmesh {
+
+/// How mid-side nodes are placed.
+struct OrderOptions {
+  bool follow_surface = true;  ///< nodes on curved interfaces leave the straight edge for the smooth surface
+  double ridge_deg = 40;  ///< two triangles that turn by more meet in a sharp edge: the surface is not smooth across it
+  double jacobian_rel = 0.2;  ///< smallest Jacobian determinant allowed anywhere in an element, as a fraction of
+                              ///< that of the straight-sided element; above 0, below 1
+  int threads = 0;            ///< 0: all of the machine; the result does not depend on it
+};
+
+struct OrderResult {
+  TetMesh mesh;                   ///< with `mid`; points of the linear mesh come first, unchanged
+  std::size_t curved_nodes = 0;   ///< mid-side nodes that left the straight edge
+  std::size_t limited_nodes = 0;  ///< of those on the surface: held nearer to the straight edge than the surface is
+  double jacobian_min_rel = 1;    ///< a lower bound, valid everywhere, of determinant / straight determinant
+};
+
+/// Makes 10-node tets of 4-node ones: a node on every edge, shared by all tets around it.
+///
+/// On an interface or the boundary a node moves from the middle of its edge to where the surface's normals at the
+/// edge's ends put it (after vlachos2001, but exact on a circle), on a sharp edge or junction to where its tangents
+/// do. What lies in a plane across an axis stays in it. A node
+/// goes only so far that the determinant stays positive in all of each element, not just at the integration
+/// points: bounded by its Bernstein coefficients (johnen2013), and halved until they allow it.
+///
+/// @param mesh linear, every tet positive, mm
+/// @throws Error(input) when the mesh has mid-side nodes already or a tet names a point that is not there
+OrderResult raise_order(TetMesh mesh, const OrderOptions& options = {});
+
+}  // namespace stackmesh
