@@ -35,7 +35,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   const CLI::Validator positive = number_in(1e-12, 1e12, "a number above 0");
   a.input.add_to(command, true);
   command.add_option("-o,--output", a.outputs,
-                     target == Target::volume ? "output: .vtu .msh .inp .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
+                     target == Target::volume ? "output: .vtu .msh .inp .feb .bdf .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
                                               : "output: .stl .ply .obj .off .vtp; repeatable")
       ->required()->allow_extra_args(false);
   command.add_option("--report", a.reports, "report file, .json; repeatable")->allow_extra_args(false);

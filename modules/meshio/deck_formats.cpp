@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -10,67 +11,84 @@
 namespace stackmesh {
 namespace {
 
-/// Corners of the faces S1 to S4 of C3D4.
-constexpr int kDeckFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+/// Numbers, 16 a line.
+void write_list(OutputBuffer& out, const std::vector<std::int32_t>& from_zero) {
+  for (std::size_t i = 0; i < from_zero.size(); ++i)
+    out << from_zero[i] + 1 << (i + 1 == from_zero.size() ? "\n" : i % 16 == 15 ? ",\n" : ", ");
+}
 
-struct TetFace {
-  std::int64_t tet = -1;
-  int face = 0;
-};
+template <std::size_t N>
+void write_element(OutputBuffer& out, std::size_t number, const std::array<std::int32_t, N>& nodes, std::size_t count) {
+  out << number;
+  for (std::size_t k = 0; k < count; ++k) out << ", " << nodes[k] + 1;
+}
 
-/// For each triangle the tet of its label `below` (if that is 0, `above`) that has it as a face; every label
-/// of the triangle but 0 must have one.
-std::vector<TetFace> find_owners(const PreparedMesh& mesh) {
-  // Triangles listed by their smallest corner.
-  const auto smallest = [](const auto& v) { return std::min({v[0], v[1], v[2]}); };
-  std::vector<std::size_t> begins(mesh.points.size() + 1, 0);
-  std::vector<char> on_triangle(mesh.points.size(), 0);
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    ++begins[smallest(t.v) + 1];
-    for (const std::int32_t v : t.v) on_triangle[v] = 1;
+void write_elastic(OutputBuffer& out, const std::string& name, double young_mpa, double poisson, double density_t_mm3) {
+  out << "*MATERIAL, NAME=" << name << "\n*ELASTIC\n";
+  out.print20(young_mpa);
+  out << ", ";
+  out.print20(poisson);
+  out << '\n';
+  if (density_t_mm3 <= 0) return;
+  out << "*DENSITY\n";
+  out.print20(density_t_mm3);
+  out << '\n';
+}
+
+/// Materials, with an element set each where a label has several, and sections.
+void write_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::vector<std::string>& label_sets, UniqueNames& element_sets) {
+  const SolverSets& sets = mesh.sets;
+  if (sets.placeholder_materials) return;  // this format can be read without
+  for (const ElementMaterial& m : sets.materials) {
+    std::string set;
+    for (std::size_t g = 0; g < mesh.labels.size(); ++g)
+      if (mesh.labels[g].label == m.label && mesh.labels[g].end - mesh.labels[g].begin == m.tets.size()) set = label_sets[g];
+    if (set.empty()) {
+      set = element_sets.add("E_" + m.name);
+      out << "*ELSET, ELSET=" << set << '\n';
+      write_list(out, m.tets);
+    }
+    write_elastic(out, m.name, m.young_mpa, m.poisson, m.density_t_mm3);
+    out << "*SOLID SECTION, ELSET=" << set << ", MATERIAL=" << m.name << '\n';
   }
-  for (std::size_t i = 0; i + 1 < begins.size(); ++i) begins[i + 1] += begins[i];
-  std::vector<std::size_t> next(begins.begin(), begins.end() - 1), listed(mesh.triangles.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) listed[next[smallest(mesh.triangles[i].v)]++] = i;
+  for (const ShellSet& s : sets.shells) {
+    write_elastic(out, "M_" + s.name, s.young_mpa, s.poisson, s.density_t_mm3);
+    out << "*SHELL SECTION, ELSET=" << s.name << ", MATERIAL=M_" << s.name << '\n';
+    out.print20(s.thickness_mm);
+    out << '\n';
+  }
+}
 
-  std::vector<TetFace> owners(mesh.triangles.size());
-  std::vector<char> has_below(mesh.triangles.size(), 0), has_above(mesh.triangles.size(), 0);
-  for (const LabelGroup& group : mesh.labels)
-    for (std::size_t t = group.begin; t < group.end; ++t)
-      for (int f = 0; f < 4; ++f) {
-        std::array<std::int32_t, 3> face;
-        bool candidate = true;
-        for (int k = 0; k < 3; ++k) {
-          face[k] = mesh.tets[t][kDeckFaces[f][k]];
-          candidate = candidate && on_triangle[face[k]];
-        }
-        if (!candidate) continue;
-        const std::int32_t first = smallest(face);
-        for (std::size_t k = begins[first]; k < begins[first + 1]; ++k) {
-          const InterfaceTriangle& triangle = mesh.triangles[listed[k]];
-          if (group.label != triangle.below && group.label != triangle.above) continue;
-          if (!std::is_permutation(face.begin(), face.end(), triangle.v.begin())) continue;
-          (group.label == triangle.below ? has_below : has_above)[listed[k]] = 1;
-          if (group.label == (triangle.below != 0 ? triangle.below : triangle.above))
-            owners[listed[k]] = {static_cast<std::int64_t>(t), f};
-        }
-      }
-  for (std::size_t i = 0; i < owners.size(); ++i)
-    if ((mesh.triangles[i].below != 0 && !has_below[i]) || (mesh.triangles[i].above != 0 && !has_above[i]))
-      fail_internal("an interface triangle is not a face of a tet of each of its labels",
-                    "triangle " + std::to_string(i) + " between labels " +
-                        std::to_string(mesh.triangles[i].below) + " and " +
-                        std::to_string(mesh.triangles[i].above));
-  return owners;
+/// One static step with the supports and forces.
+void write_step(OutputBuffer& out, const SolverSets& sets) {
+  if (!sets.has_load_case()) return;
+  out << "*STEP\n*STATIC\n";
+  for (const Support& s : sets.supports)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!s.value_mm[axis]) continue;
+      out << "*BOUNDARY\n" << s.set << ", " << axis + 1 << ", " << axis + 1 << ", ";
+      out.print20(*s.value_mm[axis]);
+      out << '\n';
+    }
+  if (!sets.forces_n.empty()) out << "*CLOAD\n";
+  for (const auto& [node, force] : sets.forces_n) {
+    const double part[3] = {force.x, force.y, force.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (part[axis] == 0) continue;
+      out << node + 1 << ", " << axis + 1 << ", ";
+      out.print20(part[axis]);
+      out << '\n';
+    }
+  }
+  out << "*NODE FILE\nU, RF\n*EL FILE\nS, E\n*END STEP\n";
 }
 
 }  // namespace
 
 // Abaqus and CalculiX: at most 16 entries a line, 20 characters a number, 80 a name.
 void write_inp(std::FILE* file, const PreparedMesh& mesh) {
-  const std::vector<TetFace> owners = find_owners(mesh);
   OutputBuffer out(file);
-  out << "*HEADING\nstackmesh\n** units: mm\n";
+  out << "*HEADING\nstackmesh\n** units: mm, N, MPa, t/mm3\n";
   if (!mesh.space.empty()) out << "** " << mesh.space_mark() << '\n';
   out << "*NODE, NSET=NALL\n";
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -84,43 +102,53 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
     out << '\n';
   }
 
-  UniqueNames element_sets(80), node_sets(80), surfaces(80);
+  UniqueNames element_sets(80);
   element_sets.add("EALL");
-  node_sets.add("NALL");
+  std::vector<std::string> label_sets;
   for (const LabelGroup& g : mesh.labels) {
-    out << "** label " << g.label << ": " << g.name
-        << "\n*ELEMENT, TYPE=" << (mesh.second_order() ? "C3D10" : "C3D4") << ", ELSET=" << element_sets.add(deck_name(g.name)) << '\n';
+    label_sets.push_back(element_sets.add(deck_name(g.name)));
+    out << "** label " << g.label << ": " << g.name << "\n*ELEMENT, TYPE=" << (mesh.second_order() ? "C3D10" : "C3D4")
+        << ", ELSET=" << label_sets.back() << '\n';
     for (std::size_t t = g.begin; t < g.end; ++t) {
-      const auto& v = mesh.tets[t];
-      out << t + 1 << ", " << v[0] + 1 << ", " << v[1] + 1 << ", " << v[2] + 1 << ", " << v[3] + 1;
+      write_element(out, t + 1, mesh.tets[t], 4);
       if (mesh.second_order())
-        for (const std::int32_t m : mesh.tet_mids[t]) out << ", " << m + 1;
+        for (const std::int32_t v : mesh.tet_mids[t]) out << ", " << v + 1;
       out << '\n';
     }
   }
   out << "*ELSET, ELSET=EALL, GENERATE\n1, " << mesh.tets.size() << ", 1\n";
-
-  for (const PairGroup& g : mesh.pairs) {
-    std::vector<std::int32_t> nodes;
-    for (std::size_t t = g.begin; t < g.end; ++t) {
-      nodes.insert(nodes.end(), mesh.triangles[t].v.begin(), mesh.triangles[t].v.end());
-      if (mesh.second_order()) nodes.insert(nodes.end(), mesh.triangle_mids[t].begin(), mesh.triangle_mids[t].end());
+  std::size_t number = mesh.tets.size();
+  for (const ShellSet& s : mesh.sets.shells) {
+    out << "** skin of label " << s.label << "\n*ELEMENT, TYPE=" << (mesh.second_order() ? "S6" : "S3") << ", ELSET=" << s.name << '\n';
+    for (const TetFace f : s.faces) {
+      write_element(out, ++number, mesh.outward_face(f), mesh.second_order() ? 6 : 3);
+      out << '\n';
     }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    out << "** labels " << g.below << '|' << g.above << ": " << g.name
-        << "\n*NSET, NSET=" << node_sets.add("N_" + deck_name(g.name)) << '\n';
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      out << nodes[i] + 1 << (i + 1 == nodes.size() ? "\n" : i % 16 == 15 ? ",\n" : ", ");
-    out << "*SURFACE, NAME=" << surfaces.add("S_" + deck_name(g.name)) << ", TYPE=ELEMENT\n";
-    for (std::size_t t = g.begin; t < g.end; ++t)
-      out << owners[t].tet + 1 << ", S" << owners[t].face + 1 << '\n';
   }
+
+  const SolverSets& sets = mesh.sets;
+  for (std::size_t i = 0; i < std::max(sets.node_sets.size(), sets.surfaces.size()); ++i) {  // a surface behind its nodes
+    if (i < sets.node_sets.size()) {
+      if (!sets.node_sets[i].note.empty()) out << "** " << sets.node_sets[i].note << '\n';
+      out << "*NSET, NSET=" << sets.node_sets[i].name << '\n';
+      write_list(out, sets.node_sets[i].nodes);
+    }
+    if (i < sets.surfaces.size()) {
+      if (!sets.surfaces[i].note.empty()) out << "** " << sets.surfaces[i].note << '\n';
+      out << "*SURFACE, NAME=" << sets.surfaces[i].name << ", TYPE=ELEMENT\n";
+      for (const TetFace f : sets.surfaces[i].faces) out << f.tet + 1 << ", S" << f.face + 1 << '\n';
+    }
+  }
+  for (const SurfacePair& pair : mesh.sets.pairs)
+    out << "** surfaces that face each other: " << pair.primary << " and " << pair.secondary << '\n';
+  write_materials(out, mesh, label_sets, element_sets);
+  write_step(out, mesh.sets);
 }
 
 // Medit, ASCII; version 2 stands for doubles.
 void write_medit(std::FILE* file, const PreparedMesh& mesh) {
-  if (mesh.second_order()) fail_usage("second-order tetrahedra are not written to Medit's .mesh", "--order 2", "choose .vtu .msh .inp or .vtk");
+  if (mesh.second_order())
+    fail_usage("second-order tetrahedra are not written to Medit's .mesh", "--order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
   OutputBuffer out(file);
   out << "MeshVersionFormatted 2\n# stackmesh, mm" << (mesh.space.empty() ? "" : ". " + mesh.space_mark())
       << '\n';

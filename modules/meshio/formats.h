@@ -17,6 +17,8 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh);
 void write_msh4(std::FILE* file, const PreparedMesh& mesh);
 void write_msh2(std::FILE* file, const PreparedMesh& mesh);
 void write_inp(std::FILE* file, const PreparedMesh& mesh);
+void write_feb(std::FILE* file, const PreparedMesh& mesh);
+void write_bdf(std::FILE* file, const PreparedMesh& mesh);
 void write_medit(std::FILE* file, const PreparedMesh& mesh);
 
 }  // namespace stackmesh

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/error.h"
@@ -11,8 +14,88 @@
 namespace stackmesh {
 namespace {
 
+/// Triangles of one elementary surface, and the physical groups that it is part of.
+struct Patch {
+  Label below = 0, above = 0;
+  std::vector<std::array<std::int32_t, 6>> triangles;  ///< mid-side nodes last, -1 in a linear mesh
+  std::vector<std::size_t> groups;
+};
+
+/// The surfaces of a mesh as Gmsh has them. A mere mesh has a patch and a group for each pair of labels; in a solver model
+/// the named surfaces are the groups, and a patch is what lies in the same ones.
+struct Surfaces {
+  std::vector<Patch> patches;
+  std::vector<std::string> groups;
+
+  explicit Surfaces(const PreparedMesh& mesh) {
+    if (mesh.sets.surfaces.empty()) from_pairs(mesh);
+    else from_sets(mesh);
+  }
+  std::size_t triangles() const {
+    std::size_t n = 0;
+    for (const Patch& p : patches) n += p.triangles.size();
+    return n;
+  }
+
+ private:
+  void from_pairs(const PreparedMesh& mesh) {
+    for (const PairGroup& g : mesh.pairs) {
+      Patch patch{g.below, g.above, {}, {groups.size()}};
+      groups.push_back(g.name);
+      for (std::size_t t = g.begin; t < g.end; ++t) {
+        const auto& v = mesh.triangles[t].v;
+        const std::array<std::int32_t, 3> m = mesh.second_order() ? mesh.triangle_mids[t] : std::array<std::int32_t, 3>{-1, -1, -1};
+        patch.triangles.push_back({v[0], v[1], v[2], m[0], m[1], m[2]});
+      }
+      patches.push_back(std::move(patch));
+    }
+  }
+
+  /// Faces that lie on each other, from either side of an interface whose nodes are shared, are one triangle.
+  void from_sets(const PreparedMesh& mesh) {
+    struct Face {
+      std::array<std::int32_t, 6> nodes;
+      Label below = 0, above = 0;
+      std::vector<std::size_t> groups;
+    };
+    std::map<std::array<std::int32_t, 3>, Face> faces;
+    const auto add = [&](TetFace f, std::size_t group) {
+      const std::array<std::int32_t, 6> nodes = mesh.outward_face(f);
+      std::array<std::int32_t, 3> key = {nodes[0], nodes[1], nodes[2]};
+      std::sort(key.begin(), key.end());
+      const Label label = label_of(mesh, f.tet);
+      const auto [at, fresh] = faces.insert({key, {nodes, label, 0, {}}});
+      if (!fresh && at->second.below != label) at->second.above = label;
+      if (at->second.groups.empty() || at->second.groups.back() != group) at->second.groups.push_back(group);
+    };
+    for (const FaceSet& set : mesh.sets.surfaces) {
+      for (const TetFace f : set.faces) add(f, groups.size());
+      groups.push_back(set.name);
+    }
+    for (const ShellSet& set : mesh.sets.shells) {
+      for (const TetFace f : set.faces) add(f, groups.size());
+      groups.push_back(set.name);
+    }
+    std::map<std::tuple<Label, Label, std::vector<std::size_t>>, Patch> by_key;
+    for (const auto& [key, face] : faces) {
+      Patch& patch = by_key[{face.below, face.above, face.groups}];
+      patch.below = face.below;
+      patch.above = face.above;
+      patch.groups = face.groups;
+      patch.triangles.push_back(face.nodes);
+    }
+    for (auto& [key, patch] : by_key) patches.push_back(std::move(patch));
+  }
+
+  static Label label_of(const PreparedMesh& mesh, std::int32_t tet) {
+    for (const LabelGroup& g : mesh.labels)
+      if (static_cast<std::size_t>(tet) < g.end) return g.label;
+    return 0;
+  }
+};
+
 /// The first tag of the surfaces: beyond the labels, so that no tag stands for two things.
-std::int32_t first_surface_tag(const PreparedMesh& mesh) {
+std::int32_t first_surface_tag(const PreparedMesh& mesh, const Surfaces& surfaces) {
   std::int64_t last = 0;
   for (const LabelGroup& g : mesh.labels) {
     if (g.label <= 0)
@@ -20,17 +103,17 @@ std::int32_t first_surface_tag(const PreparedMesh& mesh) {
                   "renumber the label or write another format");
     last = std::max<std::int64_t>(last, g.label);
   }
-  if (last + static_cast<std::int64_t>(mesh.pairs.size()) > std::numeric_limits<std::int32_t>::max())
+  if (last + static_cast<std::int64_t>(std::max(surfaces.groups.size(), surfaces.patches.size())) > std::numeric_limits<std::int32_t>::max())
     fail_output("no Gmsh tag is left for the surfaces", "label " + std::to_string(last),
                 "renumber the label or write another format");
   return static_cast<std::int32_t>(last) + 1;
 }
 
-void write_names(OutputBuffer& out, const PreparedMesh& mesh, std::int32_t surface_tag) {
+void write_names(OutputBuffer& out, const PreparedMesh& mesh, const Surfaces& surfaces, std::int32_t surface_tag) {
   if (!mesh.space.empty()) out << "$Comments\n" << mesh.space_mark() << ", mm\n$EndComments\n";
-  out << "$PhysicalNames\n" << mesh.pairs.size() + mesh.labels.size() << '\n';
-  for (std::size_t i = 0; i < mesh.pairs.size(); ++i)
-    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << " \"" << mesh.pairs[i].name << "\"\n";
+  out << "$PhysicalNames\n" << surfaces.groups.size() + mesh.labels.size() << '\n';
+  for (std::size_t i = 0; i < surfaces.groups.size(); ++i)
+    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << " \"" << surfaces.groups[i] << "\"\n";
   for (const LabelGroup& g : mesh.labels) out << "3 " << g.label << " \"" << g.name << "\"\n";
   out << "$EndPhysicalNames\n";
 }
@@ -45,25 +128,6 @@ struct Box {
   }
 };
 
-/// Gmsh's element types.
-int triangle_type(const PreparedMesh& mesh) { return mesh.second_order() ? 9 : 2; }
-int tet_type(const PreparedMesh& mesh) { return mesh.second_order() ? 11 : 4; }
-
-void write_triangle(OutputBuffer& out, const PreparedMesh& mesh, std::size_t i) {
-  for (const std::int32_t v : mesh.triangles[i].v) out << ' ' << v + 1;
-  if (mesh.second_order())
-    for (const std::int32_t v : mesh.triangle_mids[i]) out << ' ' << v + 1;
-  out << '\n';
-}
-
-/// Gmsh has the last two mid-side nodes the other way round: on edges 23, 13.
-void write_tet(OutputBuffer& out, const PreparedMesh& mesh, std::size_t i) {
-  for (const std::int32_t v : mesh.tets[i]) out << ' ' << v + 1;
-  if (mesh.second_order())
-    for (const int k : {0, 1, 2, 3, 5, 4}) out << ' ' << mesh.tet_mids[i][k] + 1;
-  out << '\n';
-}
-
 /// An entity of Gmsh's: a surface between two labels, or the volume of one. It owns the nodes that no entity
 /// before it owns, surfaces first.
 struct Entity {
@@ -71,11 +135,13 @@ struct Entity {
   std::int32_t tag = 0;
   Box box;
   std::vector<std::int32_t> nodes;
+  std::string physical;  ///< its groups
+  std::size_t physical_count = 1;
   std::string bounds;  ///< of a volume: its surfaces, negative where their normals point into it
   int bound_count = 0;
 };
 
-std::vector<Entity> make_entities(const PreparedMesh& mesh, std::int32_t surface_tag) {
+std::vector<Entity> make_entities(const PreparedMesh& mesh, const Surfaces& surfaces, std::int32_t surface_tag) {
   std::vector<Entity> entities;
   std::vector<char> owned(mesh.points.size(), 0);
   const auto take = [&](Entity& entity, std::int32_t v) {
@@ -83,28 +149,31 @@ std::vector<Entity> make_entities(const PreparedMesh& mesh, std::int32_t surface
     if (!owned[v]) entity.nodes.push_back(v);
     owned[v] = 1;
   };
-  for (std::size_t i = 0; i < mesh.pairs.size(); ++i) {
+  for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
+    const Patch& patch = surfaces.patches[i];
     Entity entity;
     entity.tag = surface_tag + static_cast<std::int32_t>(i);
-    for (std::size_t t = mesh.pairs[i].begin; t < mesh.pairs[i].end; ++t) {
-      for (const std::int32_t v : mesh.triangles[t].v) take(entity, v);
-      if (mesh.second_order())
-        for (const std::int32_t v : mesh.triangle_mids[t]) take(entity, v);
-    }
+    entity.physical_count = patch.groups.size();
+    for (const std::size_t g : patch.groups) entity.physical += " " + std::to_string(surface_tag + static_cast<std::int32_t>(g));
+    for (const auto& t : patch.triangles)
+      for (const std::int32_t v : t)
+        if (v >= 0) take(entity, v);
     entities.push_back(std::move(entity));
   }
   for (const LabelGroup& group : mesh.labels) {
     Entity entity;
     entity.dimension = 3;
     entity.tag = group.label;
+    entity.physical = " " + std::to_string(group.label);
     for (std::size_t t = group.begin; t < group.end; ++t) {
       for (const std::int32_t v : mesh.tets[t]) take(entity, v);
       if (mesh.second_order())
         for (const std::int32_t v : mesh.tet_mids[t]) take(entity, v);
     }
-    for (std::size_t i = 0; i < mesh.pairs.size(); ++i) {
-      if (mesh.pairs[i].below != group.label && mesh.pairs[i].above != group.label) continue;
-      entity.bounds += mesh.pairs[i].below == group.label ? " " : " -";
+    for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
+      const Patch& patch = surfaces.patches[i];
+      if (patch.below != group.label && patch.above != group.label) continue;
+      entity.bounds += patch.below == group.label ? " " : " -";
       entity.bounds += std::to_string(surface_tag + static_cast<std::int32_t>(i));
       ++entity.bound_count;
     }
@@ -114,20 +183,34 @@ std::vector<Entity> make_entities(const PreparedMesh& mesh, std::int32_t surface
   return entities;
 }
 
+/// Nodes of a triangle (of 3 or 6), and of a tet: Gmsh has the last two mid-side nodes of a tet the other way round.
+void write_triangle(OutputBuffer& out, const std::array<std::int32_t, 6>& nodes) {
+  for (const std::int32_t v : nodes)
+    if (v >= 0) out << ' ' << v + 1;
+  out << '\n';
+}
+void write_tet(OutputBuffer& out, const PreparedMesh& mesh, std::size_t t) {
+  for (const std::int32_t v : mesh.tets[t]) out << ' ' << v + 1;
+  if (mesh.second_order())
+    for (const int e : {0, 1, 2, 3, 5, 4}) out << ' ' << mesh.tet_mids[t][e] + 1;
+  out << '\n';
+}
+
 }  // namespace
 
 void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
-  const std::int32_t surface_tag = first_surface_tag(mesh);
-  const std::vector<Entity> entities = make_entities(mesh, surface_tag);
+  const Surfaces surfaces(mesh);
+  const std::int32_t surface_tag = first_surface_tag(mesh, surfaces);
+  const std::vector<Entity> entities = make_entities(mesh, surfaces, surface_tag);
   OutputBuffer out(file);
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
-  write_names(out, mesh, surface_tag);
+  write_names(out, mesh, surfaces, surface_tag);
 
-  out << "$Entities\n0 0 " << mesh.pairs.size() << ' ' << mesh.labels.size() << '\n';
+  out << "$Entities\n0 0 " << surfaces.patches.size() << ' ' << mesh.labels.size() << '\n';
   for (const Entity& e : entities) {
     out << e.tag;
     for (const Vec3 p : {e.box.low, e.box.high}) out << ' ' << p.x << ' ' << p.y << ' ' << p.z;
-    out << " 1 " << e.tag << ' ' << e.bound_count << e.bounds << '\n';
+    out << ' ' << e.physical_count << e.physical << ' ' << e.bound_count << e.bounds << '\n';
   }
   out << "$EndEntities\n";
 
@@ -148,18 +231,19 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   out << "$EndNodes\n";
 
   // Tets first in number, so that a tet has the same number in every format.
-  const std::size_t count = mesh.triangles.size() + mesh.tets.size();
+  const std::size_t count = surfaces.triangles() + mesh.tets.size();
   out << "$Elements\n" << entities.size() << ' ' << count << " 1 " << count << '\n';
-  for (std::size_t i = 0; i < mesh.pairs.size(); ++i) {
-    const PairGroup& g = mesh.pairs[i];
-    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << ' ' << triangle_type(mesh) << ' ' << g.end - g.begin << '\n';
-    for (std::size_t t = g.begin; t < g.end; ++t) {
-      out << mesh.tets.size() + t + 1;
-      write_triangle(out, mesh, t);
+  std::size_t number = mesh.tets.size();
+  for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
+    const Patch& patch = surfaces.patches[i];
+    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << (mesh.second_order() ? " 9 " : " 2 ") << patch.triangles.size() << '\n';
+    for (const auto& t : patch.triangles) {
+      out << ++number;
+      write_triangle(out, t);
     }
   }
   for (const LabelGroup& g : mesh.labels) {
-    out << "3 " << g.label << ' ' << tet_type(mesh) << ' ' << g.end - g.begin << '\n';
+    out << "3 " << g.label << (mesh.second_order() ? " 11 " : " 4 ") << g.end - g.begin << '\n';
     for (std::size_t t = g.begin; t < g.end; ++t) {
       out << t + 1;
       write_tet(out, mesh, t);
@@ -169,28 +253,34 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
 }
 
 void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
-  const std::int32_t surface_tag = first_surface_tag(mesh);
+  const Surfaces surfaces(mesh);
+  const std::int32_t surface_tag = first_surface_tag(mesh, surfaces);
   OutputBuffer out(file);
   out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  write_names(out, mesh, surface_tag);
+  write_names(out, mesh, surfaces, surface_tag);
   out << "$Nodes\n" << mesh.points.size() << '\n';
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const Vec3 p = mesh.points[i];
     out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
   }
-  out << "$EndNodes\n$Elements\n" << mesh.triangles.size() + mesh.tets.size() << '\n';
-  // Number, type, two tags (physical group and entity, the same here), corners.
+  // This version has one group an element: a triangle of several is written once for each, as Gmsh does.
+  std::size_t count = mesh.tets.size();
+  for (const Patch& patch : surfaces.patches) count += patch.groups.size() * patch.triangles.size();
+  out << "$EndNodes\n$Elements\n" << count << '\n';
+  // Number, type, two tags (physical group and entity), nodes.
   for (const LabelGroup& g : mesh.labels)
     for (std::size_t t = g.begin; t < g.end; ++t) {
-      out << t + 1 << ' ' << tet_type(mesh) << " 2 " << g.label << ' ' << g.label;
+      out << t + 1 << (mesh.second_order() ? " 11 2 " : " 4 2 ") << g.label << ' ' << g.label;
       write_tet(out, mesh, t);
     }
-  for (std::size_t i = 0; i < mesh.pairs.size(); ++i)
-    for (std::size_t t = mesh.pairs[i].begin; t < mesh.pairs[i].end; ++t) {
-      const std::int32_t tag = surface_tag + static_cast<std::int32_t>(i);
-      out << mesh.tets.size() + t + 1 << ' ' << triangle_type(mesh) << " 2 " << tag << ' ' << tag;
-      write_triangle(out, mesh, t);
-    }
+  std::size_t number = mesh.tets.size();
+  for (std::size_t i = 0; i < surfaces.patches.size(); ++i)
+    for (const std::size_t g : surfaces.patches[i].groups)
+      for (const auto& t : surfaces.patches[i].triangles) {
+        out << ++number << (mesh.second_order() ? " 9 2 " : " 2 2 ") << surface_tag + static_cast<std::int32_t>(g) << ' '
+            << surface_tag + static_cast<std::int32_t>(i);
+        write_triangle(out, t);
+      }
   out << "$EndElements\n";
 }
 

@@ -211,14 +211,12 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
   PreparedMesh prepared;
   prepared.space = space_name(options.space);
   const Grouping<Label> groups(mesh.tets.size(), [&](std::size_t i) { return mesh.labels[i]; });
+  if (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size())
+    fail_internal("a mesh to be written has mid-side nodes for some of its tets only", path);
   prepared.tets.reserve(mesh.tets.size());
   for (const std::size_t i : groups.order) prepared.tets.push_back(mesh.tets[i]);
-  if (!mesh.mid.empty()) {
-    if (mesh.mid.size() != mesh.tets.size())
-      fail_internal("a mesh to be written has mid-side nodes for some tets only", path);
-    prepared.tet_mids.reserve(mesh.tets.size());
+  if (!mesh.mid.empty())
     for (const std::size_t i : groups.order) prepared.tet_mids.push_back(mesh.mid[i]);
-  }
   std::vector<InterfaceTriangle> triangles = mesh.faces;
   for (InterfaceTriangle& t : triangles)
     if (wants_flip(t)) flip(t);
@@ -232,6 +230,26 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
   take_points(mesh.points, path, prepared);
   if (prepared.second_order()) find_triangle_mids(path, prepared);
   return prepared;
+}
+
+PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& options, const std::string& path) {
+  MeshWriteOptions named = options;
+  named.labels = model.labels;
+  PreparedMesh prepared = prepare_volume(model.mesh, named, path);
+  // The sets count tets and points as the model does.
+  if (prepared.points.size() != model.mesh.points.size() || prepared.tets != model.mesh.tets)
+    fail_internal("a solver model to be written is not ordered by label, or has unused points", path);
+  prepared.sets = model.sets;
+  return prepared;
+}
+
+std::array<std::int32_t, 6> PreparedMesh::outward_face(TetFace f) const {
+  const auto& corner = kTetFaces[f.face];
+  const auto& mid = kTetFaceMids[f.face];
+  std::array<std::int32_t, 6> nodes = {tets[f.tet][corner[0]], tets[f.tet][corner[2]], tets[f.tet][corner[1]], -1, -1, -1};
+  if (second_order())
+    for (int k = 0; k < 3; ++k) nodes[3 + k] = tet_mids[f.tet][mid[2 - k]];
+  return nodes;
 }
 
 std::string UniqueNames::add(std::string name) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "meshio/write_mesh.h"
+#include "model/solver_model.h"
 
 namespace stackmesh {
 
@@ -29,14 +30,18 @@ struct PreparedMesh {
   std::vector<Vec3> points;
   std::vector<InterfaceTriangle> triangles;
   std::vector<std::array<std::int32_t, 4>> tets;
-  std::vector<std::array<std::int32_t, 6>> tet_mids;       ///< second order: as TetMesh::mid; else empty
-  std::vector<std::array<std::int32_t, 3>> triangle_mids;  ///< second order: on edges 01 12 20; else empty
+  std::vector<std::array<std::int32_t, 6>> tet_mids;           ///< second order: mid-side nodes of the tets (kTetEdges)
+  std::vector<std::array<std::int32_t, 3>> triangle_mids;  ///< second order: of the triangles, each behind its corner
   std::vector<PairGroup> pairs;    ///< ascending (below, above)
   std::vector<LabelGroup> labels;  ///< ascending; empty for a surface
   std::string space;               ///< "LPS", "RAS" or ""
+  SolverSets sets;                 ///< of a solver model; for a deck of a mere mesh by add_interface_sets()
+
+  bool second_order() const { return !tet_mids.empty(); }
+  /// Corners and mid-side nodes of a tet's face, outward (from inside anticlockwise turned round).
+  std::array<std::int32_t, 6> outward_face(TetFace f) const;
 
   /// "SPACE=LPS", or "SPACE=" of nothing: empty.
-  bool second_order() const { return !tet_mids.empty(); }
   std::string space_mark() const { return space.empty() ? "" : "SPACE=" + space; }
 };
 
@@ -46,6 +51,10 @@ PreparedMesh prepare_surface(const InterfaceComplex& surface, const MeshWriteOpt
 PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
                                    const MeshWriteOptions& options, const std::string& path);
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path);
+PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& options, const std::string& path);
+
+/// A node set and a face set for each pair of labels, and a placeholder material for each label.
+void add_interface_sets(PreparedMesh& mesh);
 
 /// Makes names distinct, whatever their letter case, within a length.
 class UniqueNames {

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,8 +11,11 @@
 namespace stackmesh {
 namespace {
 
-// VTK's cell types; its order of mid-side nodes is ours.
-constexpr std::int32_t kTriangle = 5, kTet = 10, kTriangle6 = 22, kTet10 = 24;
+constexpr std::int32_t kTriangle = 5, kTet = 10, kTriangle6 = 22, kTet10 = 24;  // VTK's cell types
+
+std::int32_t cell_type(const PreparedMesh& mesh, bool tet) {
+  return mesh.second_order() ? (tet ? kTet10 : kTriangle6) : (tet ? kTet : kTriangle);
+}
 
 /// A VTK XML file whose arrays follow the header as raw bytes.
 class XmlFile {
@@ -90,7 +95,7 @@ struct Connectivity {
   std::vector<std::int32_t> corners;
 
   explicit Connectivity(const PreparedMesh& mesh) {
-    corners.reserve((mesh.second_order() ? 10 : 4) * mesh.tets.size() + (mesh.second_order() ? 6 : 3) * mesh.triangles.size());
+    corners.reserve(4 * mesh.tets.size() + 3 * mesh.triangles.size());
     ends.reserve(mesh.tets.size() + mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
       corners.insert(corners.end(), mesh.tets[i].begin(), mesh.tets[i].end());
@@ -98,11 +103,42 @@ struct Connectivity {
       ends.push_back(static_cast<std::int64_t>(corners.size()));
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const auto& v = mesh.triangles[i].v;
-      corners.insert(corners.end(), v.begin(), v.end());
+      corners.insert(corners.end(), mesh.triangles[i].v.begin(), mesh.triangles[i].v.end());
       if (mesh.second_order()) corners.insert(corners.end(), mesh.triangle_mids[i].begin(), mesh.triangle_mids[i].end());
       ends.push_back(static_cast<std::int64_t>(corners.size()));
     }
+  }
+};
+
+/// What a solver model has per cell: modulus, density, element quality, thickness of skins (0 where there is none).
+struct CellFields {
+  std::vector<std::pair<std::string, std::vector<double>>> list;
+
+  explicit CellFields(const PreparedMesh& mesh) {
+    const SolverSets& sets = mesh.sets;
+    const auto add = [&](const std::string& name, std::vector<double> of_tets) {
+      of_tets.resize(mesh.tets.size() + mesh.triangles.size(), 0);
+      list.emplace_back(name, std::move(of_tets));
+    };
+    if (!sets.modulus_mpa.empty()) add("modulus_MPa", sets.modulus_mpa);
+    if (!sets.density_t_mm3.empty()) add("density_t_mm3", sets.density_t_mm3);
+    if (!sets.quality.empty()) add("scaled_jacobian", sets.quality);
+    if (!sets.shells.empty()) add("skin_mm", std::vector<double>());
+    for (const ShellSet& s : sets.shells) {
+      std::map<std::array<std::int32_t, 3>, std::size_t> cell_of;
+      for (std::size_t i = 0; i < mesh.triangles.size(); ++i) cell_of[sorted(mesh.triangles[i].v)] = mesh.tets.size() + i;
+      for (const TetFace f : s.faces) {
+        const std::array<std::int32_t, 6> nodes = mesh.outward_face(f);
+        const auto found = cell_of.find(sorted({nodes[0], nodes[1], nodes[2]}));
+        if (found != cell_of.end()) list.back().second[found->second] = s.thickness_mm;
+      }
+    }
+  }
+
+ private:
+  static std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> v) {
+    std::sort(v.begin(), v.end());
+    return v;
   }
 };
 
@@ -137,8 +173,9 @@ void write_vtp(std::FILE* file, const PreparedMesh& mesh) {
 void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
   const CellLabels cells(mesh);
   const Connectivity connectivity(mesh);
-  std::vector<std::uint8_t> types(mesh.tets.size(), mesh.second_order() ? kTet10 : kTet);
-  types.resize(types.size() + mesh.triangles.size(), mesh.second_order() ? kTriangle6 : kTriangle);
+  const CellFields fields(mesh);
+  std::vector<std::uint8_t> types(mesh.tets.size(), static_cast<std::uint8_t>(cell_type(mesh, true)));
+  types.resize(types.size() + mesh.triangles.size(), static_cast<std::uint8_t>(cell_type(mesh, false)));
   XmlFile xml("UnstructuredGrid");
   xml.space(mesh.space, false);  // meshio refuses a file that holds a string
   xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
@@ -146,6 +183,7 @@ void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
   xml.array("label", cells.label, "Int32");
   xml.array("label_below", cells.below, "Int32");
   xml.array("label_above", cells.above, "Int32");
+  for (const auto& [name, values] : fields.list) xml.array(name, values, "Float64");
   xml << "</CellData>\n";
   add_points(xml, mesh);
   xml << "<Cells>\n";
@@ -173,15 +211,15 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
   const std::size_t count = mesh.tets.size() + mesh.triangles.size();
   const Connectivity connectivity(mesh);
   out << "\nCELLS " << count << ' ' << count + connectivity.corners.size() << '\n';
-  for (std::int64_t cell = 0, at = 0; cell < static_cast<std::int64_t>(count); ++cell) {
-    const std::int64_t end = connectivity.ends[cell];
-    out.big_endian(static_cast<std::int32_t>(end - at));
-    for (; at < end; ++at) out.big_endian(connectivity.corners[at]);
+  std::int64_t begin = 0;
+  for (const std::int64_t end : connectivity.ends) {
+    out.big_endian(static_cast<std::int32_t>(end - begin));
+    for (; begin < end; ++begin) out.big_endian(connectivity.corners[begin]);
   }
   out << "\nCELL_TYPES " << count << '\n';
-  for (std::size_t i = 0; i < count; ++i) 
-    out.big_endian(i < mesh.tets.size() ? (mesh.second_order() ? kTet10 : kTet) : (mesh.second_order() ? kTriangle6 : kTriangle));
-  out << "\nCELL_DATA " << count << "\nFIELD FieldData 3\n";
+  for (std::size_t i = 0; i < count; ++i) out.big_endian(cell_type(mesh, i < mesh.tets.size()));
+  const CellFields fields(mesh);
+  out << "\nCELL_DATA " << count << "\nFIELD FieldData " << 3 + fields.list.size() << '\n';
   const auto field = [&](const char* name, const std::vector<std::int32_t>& values) {
     out << name << " 1 " << count << " int\n";
     for (const std::int32_t v : values) out.big_endian(v);
@@ -190,6 +228,11 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
   field("label", cells.label);
   field("label_below", cells.below);
   field("label_above", cells.above);
+  for (const auto& [name, values] : fields.list) {
+    out << name << " 1 " << count << " double\n";
+    for (const double v : values) out.big_endian(v);
+    out << '\n';
+  }
 }
 
 }  // namespace stackmesh

@@ -21,6 +21,8 @@ constexpr Format kSurfaceFormats[] = {
 constexpr Format kVolumeFormats[] = {{".vtu", write_vtu},
                                      {".msh", write_msh4},
                                      {".inp", write_inp},
+                                     {".feb", write_feb},
+                                     {".bdf", write_bdf},
                                      {".vtk", write_vtk},
                                      {".mesh", write_medit}};
 
@@ -88,7 +90,15 @@ void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& me
                   const MeshWriteOptions& options) {
   Writer writer = need_writer(kVolumeFormats, path, "volume");
   if (writer == write_msh4 && options.msh2) writer = write_msh2;
-  const PreparedMesh prepared = prepare_volume(mesh, options, path);
+  PreparedMesh prepared = prepare_volume(mesh, options, path);
+  if (writer == write_inp || writer == write_feb || writer == write_bdf) add_interface_sets(prepared);
+  files.write(path, [&](std::FILE* file) { writer(file, prepared); });
+}
+
+void write_model(AtomicFiles& files, const std::string& path, const SolverModel& model, const MeshWriteOptions& options) {
+  Writer writer = need_writer(kVolumeFormats, path, "volume");
+  if (writer == write_msh4 && options.msh2) writer = write_msh2;
+  const PreparedMesh prepared = prepare_model(model, options, path);
   files.write(path, [&](std::FILE* file) { writer(file, prepared); });
 }
 

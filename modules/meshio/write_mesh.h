@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "model/complex.h"
 #include "model/label_volume.h"
+#include "model/solver_model.h"
 #include "model/tet_mesh.h"
 
 namespace stackmesh {
@@ -22,7 +23,7 @@ struct MeshWriteOptions {
 
 /// True for .stl .ply .obj .off .vtp, in any letter case.
 bool is_surface_format(const std::string& path);
-/// True for .vtu .msh .inp .vtk .mesh, in any letter case.
+/// True for .vtu .msh .inp .feb .bdf .vtk .mesh, in any letter case.
 bool is_volume_format(const std::string& path);
 
 /// Writes the interfaces, in mm as they are, to one file (or one per label), in the format of its ending.
@@ -43,5 +44,11 @@ void write_surface(AtomicFiles& files, const std::string& path, const InterfaceC
 /// label that Gmsh cannot number.
 void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
                   const MeshWriteOptions& options = {});
+
+/// Writes a solver model, in mm as it is, in the volume format of the path's ending: sets, materials and load case in the decks
+/// (.inp .feb .bdf), named surfaces as physical groups in .msh, modulus, density and quality per cell in .vtu and .vtk.
+/// Elements and nodes have the same numbers in every format. The caller commits `files`. @throws as write_volume();
+/// Error(internal) for a model whose tets are not grouped by label, or which has unused points.
+void write_model(AtomicFiles& files, const std::string& path, const SolverModel& model, const MeshWriteOptions& options = {});
 
 }  // namespace stackmesh

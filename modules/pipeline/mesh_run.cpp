@@ -48,13 +48,13 @@ class MeshRun {
       const bool surface = is_surface_format(path), volume = is_volume_format(path);
       if (!surface && !(volume && o_.target == Target::volume))
         fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
-                   o_.target == Target::volume ? "choose .vtu .msh .inp .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
+                   o_.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
                                                : "choose .stl .ply .obj .off .vtp");
     }
     if (o_.order == 2)
       for (const std::string& path : o_.outputs)
         if (ends_with(path, ".mesh"))
-          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp or .vtk");
+          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
     for (const std::string& path : o_.reports)
       if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");

@@ -101,7 +101,7 @@ TEST(WriteSurface, StlMarksRasAndLeavesTheMarkOutWithoutAnatomy) {
   for (const char* ending : {".stl", ".ply", ".obj", ".off", ".vtp"})
     EXPECT_EQ(written_surface(ending, sample_surface(one_tet()), options).find("SPACE"), std::string::npos)
         << ending;
-  for (const char* ending : {".vtu", ".msh", ".inp", ".vtk", ".mesh"})
+  for (const char* ending : {".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh"})
     EXPECT_EQ(written_volume(ending, one_tet(), options).find("SPACE"), std::string::npos) << ending;
 }
 
@@ -109,7 +109,7 @@ TEST(WriteSurface, EveryFormatSaysItsSpace) {
   for (const char* ending : {".stl", ".ply", ".obj", ".off", ".vtp"})
     EXPECT_NE(written_surface(ending, sample_surface(one_tet()), {}).find("SPACE=LPS"), std::string::npos)
         << ending;
-  for (const char* ending : {".vtu", ".msh", ".inp", ".vtk", ".mesh"})
+  for (const char* ending : {".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh"})
     EXPECT_NE(written_volume(ending, one_tet(), {}).find("SPACE=LPS"), std::string::npos) << ending;
 }
 
@@ -254,7 +254,7 @@ TEST(WriteVolume, MeditHoldsLabelsAsReferences) {
 
 TEST(WriteMesh, ASecondWriteIsBitIdentical) {
   const TetMesh mesh = sample_mesh(6);
-  for (const char* ending : {".vtu", ".msh", ".inp", ".vtk", ".mesh"}) {
+  for (const char* ending : {".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh"}) {
     const std::string first = written_volume(ending, mesh, {});
     EXPECT_FALSE(first.empty());
     EXPECT_EQ(first, written_volume(ending, mesh, {})) << ending;

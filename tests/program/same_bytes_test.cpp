@@ -12,7 +12,7 @@ class SameBytes : public ProgramTest, public ::testing::WithParamInterface<const
                              msh2 = {"mesh",   input, "--threads",         threads,
                                      "--msh2", "-o",  out(name + "_2.msh")},
                              surfaces = {"surface", input, "--threads", threads, "--per-label"};
-    for (const char* ending : {"vtu", "msh", "inp", "vtk", "mesh", "stl", "ply", "obj", "off", "vtp"})
+    for (const char* ending : {"vtu", "msh", "inp", "feb", "bdf", "vtk", "mesh", "stl", "ply", "obj", "off", "vtp"})
       volume.insert(volume.end(), {"-o", out(name + "." + ending)});
     for (const char* ending : {"stl", "ply", "obj", "off", "vtp"})
       surfaces.insert(surfaces.end(), {"-o", out(name + "." + ending)});

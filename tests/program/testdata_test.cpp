@@ -90,7 +90,7 @@ class Testdata : public ProgramTest, public ::testing::WithParamInterface<Sample
   }
   std::vector<std::string> to_every_format() const {
     std::vector<std::string> arguments;
-    for (const char* ending : {"vtu", "msh", "inp", "vtk", "mesh", "stl", "ply", "obj", "off", "vtp"}) {
+    for (const char* ending : {"vtu", "msh", "inp", "feb", "bdf", "vtk", "mesh", "stl", "ply", "obj", "off", "vtp"}) {
       arguments.push_back("-o");
       arguments.push_back(out(std::string("m.") + ending));
     }
@@ -145,7 +145,7 @@ TEST_P(Testdata, MeshesToEveryFormatInOneRun) {
   std::vector<std::string> more = to_every_format();
   more.insert(more.end(), {"--report", out("R.json")});
   const Ended r = succeeds(mesh(more));
-  EXPECT_EQ(written(), (std::vector<std::string>{"R.json", "m.inp", "m.mesh", "m.msh", "m.obj", "m.off",
+  EXPECT_EQ(written(), (std::vector<std::string>{"R.json", "m.bdf", "m.feb", "m.inp", "m.mesh", "m.msh", "m.obj", "m.off",
                                                  "m.ply", "m.stl", "m.vtk", "m.vtp", "m.vtu"}));
   check(report());
   // In a pipe: results on stdout, on stderr nothing but warnings, which are those of the report.

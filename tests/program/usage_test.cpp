@@ -121,7 +121,7 @@ TEST_F(Usage, HelpNamesEveryOption) {
   std::vector<std::string> mesh = both, surface = both;
   mesh.insert(mesh.end(),
               {"--target-tets", "--max-volume", "--radius-edge", "--dihedral", "--order", "--timeout",
-               "--msh2", ".vtu", ".msh", ".inp", ".vtk", ".mesh", ".stl", ".ply", ".obj", ".off", ".vtp"});
+               "--msh2", ".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh", ".stl", ".ply", ".obj", ".off", ".vtp"});
   surface.insert(surface.end(), {"--raw", ".stl", ".ply", ".obj", ".off", ".vtp"});
   for (const Help& help : {Help{"mesh", mesh}, Help{"surface", surface},
                            Help{"contours",

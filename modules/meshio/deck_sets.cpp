@@ -1,0 +1,90 @@
+// The sets that a deck of a mere mesh gets: its interfaces, and materials to be replaced.
+#include <algorithm>
+
+#include "base/error.h"
+#include "meshio/prepared_mesh.h"
+
+namespace stackmesh {
+namespace {
+
+/// For each triangle the tet of its label `below` (if that is 0, `above`) that has it as a face; every label
+/// of the triangle but 0 must have one.
+std::vector<TetFace> find_owners(const PreparedMesh& mesh) {
+  // Triangles listed by their smallest corner.
+  const auto smallest = [](const auto& v) { return std::min({v[0], v[1], v[2]}); };
+  std::vector<std::size_t> begins(mesh.points.size() + 1, 0);
+  std::vector<char> on_triangle(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    ++begins[smallest(t.v) + 1];
+    for (const std::int32_t v : t.v) on_triangle[v] = 1;
+  }
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) begins[i + 1] += begins[i];
+  std::vector<std::size_t> next(begins.begin(), begins.end() - 1), listed(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) listed[next[smallest(mesh.triangles[i].v)]++] = i;
+
+  std::vector<TetFace> owners(mesh.triangles.size());
+  std::vector<char> has_below(mesh.triangles.size(), 0), has_above(mesh.triangles.size(), 0);
+  for (const LabelGroup& group : mesh.labels)
+    for (std::size_t t = group.begin; t < group.end; ++t)
+      for (int f = 0; f < 4; ++f) {
+        std::array<std::int32_t, 3> face;
+        bool candidate = true;
+        for (int k = 0; k < 3; ++k) {
+          face[k] = mesh.tets[t][kTetFaces[f][k]];
+          candidate = candidate && on_triangle[face[k]];
+        }
+        if (!candidate) continue;
+        const std::int32_t first = smallest(face);
+        for (std::size_t k = begins[first]; k < begins[first + 1]; ++k) {
+          const InterfaceTriangle& triangle = mesh.triangles[listed[k]];
+          if (group.label != triangle.below && group.label != triangle.above) continue;
+          if (!std::is_permutation(face.begin(), face.end(), triangle.v.begin())) continue;
+          (group.label == triangle.below ? has_below : has_above)[listed[k]] = 1;
+          if (group.label == (triangle.below != 0 ? triangle.below : triangle.above))
+            owners[listed[k]] = {static_cast<std::int32_t>(t), f};
+        }
+      }
+  for (std::size_t i = 0; i < owners.size(); ++i)
+    if ((mesh.triangles[i].below != 0 && !has_below[i]) || (mesh.triangles[i].above != 0 && !has_above[i]))
+      fail_internal("an interface triangle is not a face of a tet of each of its labels",
+                    "triangle " + std::to_string(i) + " between labels " +
+                        std::to_string(mesh.triangles[i].below) + " and " +
+                        std::to_string(mesh.triangles[i].above));
+  return owners;
+}
+
+}  // namespace
+
+void add_interface_sets(PreparedMesh& mesh) {
+  const std::vector<TetFace> owners = find_owners(mesh);
+  UniqueNames node_sets(80), surfaces(80), materials(78);
+  node_sets.add("NALL");
+  for (const PairGroup& g : mesh.pairs) {
+    NodeSet nodes;
+    FaceSet faces;
+    nodes.note = "labels " + std::to_string(g.below) + '|' + std::to_string(g.above) + ": " + g.name;
+    nodes.name = node_sets.add("N_" + deck_name(g.name));
+    faces.name = surfaces.add("S_" + deck_name(g.name));
+    for (std::size_t t = g.begin; t < g.end; ++t) {
+      nodes.nodes.insert(nodes.nodes.end(), mesh.triangles[t].v.begin(), mesh.triangles[t].v.end());
+      if (mesh.second_order()) nodes.nodes.insert(nodes.nodes.end(), mesh.triangle_mids[t].begin(), mesh.triangle_mids[t].end());
+      faces.faces.push_back(owners[t]);
+    }
+    std::sort(nodes.nodes.begin(), nodes.nodes.end());
+    nodes.nodes.erase(std::unique(nodes.nodes.begin(), nodes.nodes.end()), nodes.nodes.end());
+    mesh.sets.node_sets.push_back(std::move(nodes));
+    mesh.sets.surfaces.push_back(std::move(faces));
+  }
+  mesh.sets.placeholder_materials = true;
+  for (const LabelGroup& g : mesh.labels) {
+    ElementMaterial m;
+    m.name = materials.add("M_" + deck_name(g.name));
+    m.label = g.label;
+    m.young_mpa = 1;
+    m.poisson = 0.3;
+    for (std::size_t t = g.begin; t < g.end; ++t) m.tets.push_back(static_cast<std::int32_t>(t));
+    mesh.sets.materials.push_back(std::move(m));
+  }
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,263 @@
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "meshio/formats.h"
+#include "meshio/output_buffer.h"
+
+namespace stackmesh {
+namespace {
+
+/// A number in a field of 16 characters, with the point that Nastran wants: as many digits as fit.
+std::string field16(double value) {
+  if (value == 0) return "0.";
+  for (int digits = 17; digits > 0; --digits) {
+    char buffer[64];
+    const auto end = digits == 17 ? std::to_chars(buffer, buffer + sizeof buffer, value).ptr
+                                  : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
+    std::string text(buffer, end);
+    const std::size_t exponent = text.find('e');
+    if (text.find('.') == std::string::npos) text.insert(exponent == std::string::npos ? text.size() : exponent, ".");
+    if (const std::size_t e = text.find('e'); e != std::string::npos) text[e] = 'E';
+    if (text.size() <= 16) return text;
+  }
+  return "0.";
+}
+
+/// Bulk data: large fields (16 characters) for real numbers, small ones (8) for whole numbers.
+class NastranFile {
+ public:
+  NastranFile(std::FILE* file, const PreparedMesh& mesh) : out_(file), mesh_(mesh), sets_(mesh.sets) {
+    if (mesh.points.size() > 99999999 || mesh.tets.size() > 99999999)
+      fail_output("Nastran's numbers have at most 8 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
+  }
+
+  void write() {
+    out_ << "$ stackmesh\n$ units: mm, N, MPa, t/mm3\n";
+    if (!mesh_.space.empty()) out_ << "$ " << mesh_.space_mark() << '\n';
+    out_ << "SOL 101\nCEND\nTITLE = stackmesh\n";
+    case_sets();
+    if (sets_.has_load_case()) {
+      out_ << "DISPLACEMENT = ALL\nSTRESS = ALL\nSUBCASE 1\n  SPC = 1\n";
+      if (!sets_.forces_n.empty() || moves()) out_ << "  LOAD = 2\n";
+    }
+    out_ << "BEGIN BULK\n";
+    nodes();
+    elements();
+    materials();
+    load_case();
+    out_ << "ENDDATA\n";
+  }
+
+ private:
+  void small(std::int64_t value) { padded(std::to_string(value), 8); }
+  void large(std::int64_t value) { padded(std::to_string(value), 16); }
+  void large(double value) { padded(field16(value), 16); }
+  void padded(const std::string& text, std::size_t width) {
+    for (std::size_t i = text.size(); i < width; ++i) out_ << ' ';
+    out_ << text;
+  }
+
+  /// SET n = 1,2,3, ... in lines of at most 72 characters.
+  void set(int number, const std::string& what, const std::vector<std::int64_t>& ids) {
+    if (ids.empty()) return;
+    out_ << "$ SET " << number << ": " << what << '\n';
+    std::string line = "SET " + std::to_string(number) + " = ";
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const std::string text = std::to_string(ids[i]) + (i + 1 < ids.size() ? "," : "");
+      if (line.size() + text.size() > 70) {
+        out_ << line << '\n';
+        line = "  ";
+      }
+      line += text;
+    }
+    out_ << line << '\n';
+  }
+
+  void case_sets() {
+    int number = 100;
+    for (const LabelGroup& g : mesh_.labels) {
+      std::vector<std::int64_t> ids;
+      for (std::size_t t = g.begin; t < g.end; ++t) ids.push_back(static_cast<std::int64_t>(t) + 1);
+      set(++number, "elements of " + deck_name(g.name) + " (label " + std::to_string(g.label) + ")", ids);
+    }
+    for (const NodeSet& s : sets_.node_sets) {
+      std::vector<std::int64_t> ids;
+      for (const std::int32_t v : s.nodes) ids.push_back(static_cast<std::int64_t>(v) + 1);
+      set(++number, "nodes of " + s.name, ids);
+    }
+    for (const FaceSet& s : sets_.surfaces) {
+      std::vector<std::int64_t> ids;
+      for (const TetFace f : s.faces)
+        if (ids.empty() || ids.back() != f.tet + 1) ids.push_back(static_cast<std::int64_t>(f.tet) + 1);
+      set(++number, "elements that have a face on " + s.name, ids);
+    }
+  }
+
+  void nodes() {
+    for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
+      const Vec3 p = mesh_.points[i];
+      out_ << "GRID*   ";
+      large(static_cast<std::int64_t>(i) + 1);
+      padded("", 16);
+      large(p.x);
+      large(p.y);
+      out_ << "\n*       ";
+      large(p.z);
+      out_ << '\n';
+    }
+  }
+
+  /// Properties: the label's number where it has one material, else beyond all labels.
+  std::vector<std::int64_t> properties() const {
+    std::int64_t next = 0;
+    for (const LabelGroup& g : mesh_.labels) next = std::max<std::int64_t>(next, g.label);
+    std::vector<std::int64_t> ids;
+    for (const ElementMaterial& m : sets_.materials) {
+      bool whole = m.label > 0 && m.label < 10000000;
+      for (const LabelGroup& g : mesh_.labels)
+        if (g.label == m.label) whole = whole && g.end - g.begin == m.tets.size();
+      ids.push_back(whole ? m.label : ++next);
+    }
+    if (next + static_cast<std::int64_t>(sets_.shells.size()) > 99999999)
+      fail_output("Nastran's numbers have at most 8 digits", "label " + std::to_string(next), "renumber the labels");
+    return ids;
+  }
+
+  void element(const char* card, std::int64_t number, std::int64_t property, const std::vector<std::int32_t>& nodes) {
+    out_ << card;
+    small(number);
+    small(property);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (k == 6) out_ << "+       \n+       ";  // marked, as older readers want it
+      small(static_cast<std::int64_t>(nodes[k]) + 1);
+    }
+    out_ << '\n';
+  }
+
+  void elements() {
+    ids_ = properties();
+    std::vector<std::int64_t> property(mesh_.tets.size(), 0);
+    for (std::size_t i = 0; i < ids_.size(); ++i)
+      for (const std::int32_t t : sets_.materials[i].tets) property[t] = ids_[i];
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      std::vector<std::int32_t> nodes(mesh_.tets[t].begin(), mesh_.tets[t].end());
+      if (mesh_.second_order()) nodes.insert(nodes.end(), mesh_.tet_mids[t].begin(), mesh_.tet_mids[t].end());
+      element("CTETRA  ", static_cast<std::int64_t>(t) + 1, property[t], nodes);
+    }
+    shell_ = 0;
+    for (const std::int64_t id : ids_) shell_ = std::max(shell_, id);
+    for (const LabelGroup& g : mesh_.labels) shell_ = std::max<std::int64_t>(shell_, g.label);
+    std::int64_t number = static_cast<std::int64_t>(mesh_.tets.size()), id = shell_;
+    for (const ShellSet& s : sets_.shells) {
+      ++id;
+      for (const TetFace f : s.faces) {
+        const auto face = mesh_.outward_face(f);
+        element(mesh_.second_order() ? "CTRIA6  " : "CTRIA3  ", ++number, id, {face.begin(), face.begin() + (mesh_.second_order() ? 6 : 3)});
+      }
+    }
+  }
+
+  void material(std::int64_t id, double young_mpa, double poisson, double density_t_mm3) {
+    out_ << "MAT1*   ";
+    large(id);
+    large(young_mpa);
+    padded("", 16);
+    large(poisson);
+    out_ << "\n*       ";
+    large(density_t_mm3);
+    out_ << '\n';
+  }
+
+  void materials() {
+    if (sets_.placeholder_materials) out_ << "$ No material law was given: E = 1 MPa and a nu = 0.3 hold the place.\n";
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      const ElementMaterial& m = sets_.materials[i];
+      out_ << "$ " << m.name << '\n' << "PSOLID  ";
+      small(ids_[i]);
+      small(ids_[i]);
+      out_ << '\n';
+      material(ids_[i], m.young_mpa, m.poisson, m.density_t_mm3);
+    }
+    std::int64_t id = shell_;
+    for (const ShellSet& s : sets_.shells) {
+      ++id;
+      out_ << "$ " << s.name << '\n' << "PSHELL* ";
+      large(id);
+      large(id);
+      large(s.thickness_mm);
+      large(id);
+      out_ << "\n*       \n";
+      material(id, s.young_mpa, s.poisson, s.density_t_mm3);
+    }
+  }
+
+  bool moves() const {
+    for (const Support& s : sets_.supports)
+      for (const auto& v : s.value_mm)
+        if (v && *v != 0) return true;
+    return false;
+  }
+
+  const NodeSet* find(const std::string& name) const {
+    for (const NodeSet& s : sets_.node_sets)
+      if (s.name == name) return &s;
+    return nullptr;
+  }
+
+  /// SPC1 holds degrees of freedom; a displacement that is not 0 is an SPCD beside it.
+  void load_case() {
+    for (const Support& s : sets_.supports) {
+      const NodeSet* nodes = find(s.set);
+      if (nodes == nullptr) fail_internal("a support names a set that is not there", s.set);
+      std::string axes;
+      for (int axis = 0; axis < 3; ++axis)
+        if (s.value_mm[axis]) axes += static_cast<char>('1' + axis);
+      for (std::size_t i = 0; i < nodes->nodes.size(); i += 6) {
+        out_ << "SPC1    ";
+        small(1);
+        padded(axes, 8);
+        for (std::size_t k = i; k < std::min(i + 6, nodes->nodes.size()); ++k) small(static_cast<std::int64_t>(nodes->nodes[k]) + 1);
+        out_ << '\n';
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!s.value_mm[axis] || *s.value_mm[axis] == 0) continue;
+        for (const std::int32_t v : nodes->nodes) {
+          out_ << "SPCD*   ";
+          large(std::int64_t{2});
+          large(static_cast<std::int64_t>(v) + 1);
+          large(static_cast<std::int64_t>(axis) + 1);
+          large(*s.value_mm[axis]);
+          out_ << "\n*       \n";
+        }
+      }
+    }
+    for (const auto& [node, force] : sets_.forces_n) {
+      out_ << "FORCE*  ";
+      large(std::int64_t{2});
+      large(static_cast<std::int64_t>(node) + 1);
+      large(std::int64_t{0});
+      large(1.0);
+      out_ << "\n*       ";
+      large(force.x);
+      large(force.y);
+      large(force.z);
+      out_ << '\n';
+    }
+  }
+
+  OutputBuffer out_;
+  const PreparedMesh& mesh_;
+  const SolverSets& sets_;
+  std::vector<std::int64_t> ids_;  // of properties and materials
+  std::int64_t shell_ = 0;         // the last number before those of the skins
+};
+
+}  // namespace
+
+void write_bdf(std::FILE* file, const PreparedMesh& mesh) { NastranFile(file, mesh).write(); }
+
+}  // namespace stackmesh

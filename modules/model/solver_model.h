@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/geometry.h"
+#include "model/label_volume.h"
+#include "model/tet_mesh.h"
+
+namespace stackmesh {
+
+/// Corners of the four faces of a tet, in the order of Abaqus's S1 to S4; seen from inside they run anticlockwise.
+constexpr int kTetFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+/// Mid-side nodes of those faces (kTetEdges), each behind the corner that its edge begins at.
+constexpr int kTetFaceMids[4][3] = {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}};
+
+/// A face of a tet.
+struct TetFace {
+  std::int32_t tet = 0, face = 0;
+};
+
+/// Nodes under a name. Mid-side nodes are among them when all of their faces are.
+struct NodeSet {
+  std::string name, note;            ///< the note says what it is, for a comment
+  std::vector<std::int32_t> nodes;   ///< ascending
+};
+
+/// Element faces under a name; each belongs to one tet, whose outside is the surface's outside.
+struct FaceSet {
+  std::string name, note;
+  std::vector<TetFace> faces;
+};
+
+/// Two surfaces that lie on each other, each from its own side.
+struct SurfacePair {
+  std::string name, primary, secondary;  ///< names of face sets
+};
+
+/// Elements of one material. A label with a mapped modulus has one for each of its bins.
+struct ElementMaterial {
+  std::string name;
+  Label label = 0;
+  double young_mpa = 0, poisson = 0, density_t_mm3 = 0;
+  std::vector<std::int32_t> tets;  ///< ascending
+};
+
+/// Shells on faces of tets, sharing their nodes.
+struct ShellSet {
+  std::string name;
+  Label label = 0;
+  double thickness_mm = 0;
+  double young_mpa = 0, poisson = 0, density_t_mm3 = 0;
+  std::vector<TetFace> faces;
+};
+
+/// Nodes of a set held, or moved by so much.
+struct Support {
+  std::string set;                                ///< of a node set
+  std::array<std::optional<double>, 3> value_mm;  ///< per axis; unset: free
+};
+
+/// What a solver is told beside the mesh: sets, materials, one load case.
+struct SolverSets {
+  std::vector<NodeSet> node_sets;
+  std::vector<FaceSet> surfaces;
+  std::vector<SurfacePair> pairs;
+  std::vector<ElementMaterial> materials;  ///< every tet is in exactly one, or there are none
+  bool placeholder_materials = false;      ///< nobody gave any: E = 1 MPa, Poisson's ratio 0.3
+  std::vector<Label> mapped;               ///< labels whose modulus varies from tet to tet
+  std::vector<double> modulus_mpa;         ///< per tet, not binned; empty: none
+  std::vector<double> density_t_mm3;       ///< per tet
+  std::vector<double> quality;             ///< scaled Jacobian per tet (modules/validate); empty: not measured
+  std::vector<ShellSet> shells;
+  std::vector<Support> supports;
+  std::vector<std::pair<std::int32_t, Vec3>> forces_n;  ///< on nodes, ascending
+  bool has_load_case() const { return !supports.empty() || !forces_n.empty(); }
+};
+
+/// A mesh with what a solver needs. Its tets are grouped by ascending label, no point is unused.
+struct SolverModel {
+  TetMesh mesh;
+  std::vector<LabelInfo> labels;  ///< ascending; with a name each, distinct whatever the letter case
+  SolverSets sets;
+};
+
+}  // namespace stackmesh
