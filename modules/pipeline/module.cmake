@@ -2,4 +2,4 @@
 stackmesh_module(pipeline
   SOURCES input.cpp mesh_run.cpp stage_clock.cpp
   HEADERS input.h mesh_run.h
-  USES base model image contour interpolate stitch enhance volume meshio validate report)
+  USES base model image contour interpolate stitch enhance volume fem meshio validate report)

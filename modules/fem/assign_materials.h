@@ -1,0 +1,41 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fem/material_law.h"
+#include "model/intensity_volume.h"
+#include "model/solver_model.h"
+
+namespace stackmesh {
+
+/// What a label was made of, for the report.
+struct MaterialRow {
+  Label label = 0;
+  std::string name, law;  ///< law "": constant
+  std::size_t elements = 0;
+  double young_min_mpa = 0, young_mean_mpa = 0, young_max_mpa = 0;  ///< mean over the volume
+  double poisson = 0, density_mean_t_mm3 = 0;
+  double clamped_low = 0, clamped_high = 0;  ///< shares of its elements set to the floor, the ceiling
+  std::size_t materials = 1;                 ///< bins
+  double bin_error_rel = 0;                  ///< largest |bin's modulus / element's modulus - 1|
+  std::size_t voxels = 0;                    ///< of the image, inside the label
+};
+
+struct MaterialReport {
+  std::vector<MaterialRow> labels;
+  std::vector<std::string> warnings;
+};
+
+struct MaterialOptions {
+  bool ras = false;  ///< the mesh's frame is RAS; the image's is always LPS
+};
+
+/// Gives every element its material: constant by label, or from the image's intensities by a law. Only voxels inside the label
+/// (less a margin) speak for it. The modulus of each element is kept, and binned for decks that need a material for each.
+/// Skins get theirs. Without a plan, every label gets a placeholder.
+/// @param plan nullptr: none; @param image nullptr: none
+/// @throws Error(input): a label or skin without material, a law that names a label that is not there, an image that does not cover an
+/// element of a label with a law, an element whose modulus is not positive (it is named); Error(usage): a law without an image
+MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options);
+
+}  // namespace stackmesh

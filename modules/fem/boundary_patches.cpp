@@ -1,0 +1,139 @@
+#include "fem/boundary_patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+namespace stackmesh {
+namespace {
+
+class Sets {  // union-find
+ public:
+  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  std::int32_t find(std::int32_t a) {
+    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
+    return a;
+  }
+  void join(std::int32_t a, std::int32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+struct Border {
+  std::int32_t a = 0, b = 0;  // places in the list of faces
+  double length = 0;
+  bool sharp = false, wall = false;
+};
+
+/// Edges that exactly two of the faces share.
+std::vector<Border> borders(const std::vector<BoundaryFace>& all, const Patch& faces, const std::vector<char>& wall, double sharp_deg) {
+  struct Edge {
+    std::int32_t low, high, face;
+  };
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const auto& v = all[faces[i]].v;
+      edges.push_back({std::min(v[k], v[(k + 1) % 3]), std::max(v[k], v[(k + 1) % 3]), static_cast<std::int32_t>(i)});
+    }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.face < b.face;
+  });
+  const double flat = std::cos(sharp_deg * M_PI / 180);
+  std::vector<Border> found;
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+    if (end - i == 2) {
+      const std::int32_t a = edges[i].face, b = edges[i + 1].face;
+      const BoundaryFace &f = all[faces[a]], &g = all[faces[b]];
+      // The edge's length from the two triangles' areas and centres is not at hand: areas' root is a fair weight.
+      found.push_back({a, b, std::sqrt(std::min(f.area_mm2, g.area_mm2)), dot(f.normal, g.normal) < flat,
+                       wall[faces[a]] != wall[faces[b]]});
+    }
+    i = end;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, const Patch& faces, const std::vector<char>& wall,
+                                        const PatchOptions& options) {
+  const std::vector<Border> edges = borders(all, faces, wall, options.sharp_deg);
+  const auto sharp = std::count_if(edges.begin(), edges.end(), [](const Border& b) { return b.sharp; });
+  const bool staircase = static_cast<std::size_t>(sharp) * 4 > edges.size();
+  Sets components(faces.size()), patches(faces.size());
+  for (const Border& b : edges) {
+    components.join(b.a, b.b);
+    if (!b.wall && (staircase || !b.sharp)) patches.join(b.a, b.b);
+  }
+  std::vector<double> of_component(faces.size(), 0), of_patch(faces.size(), 0);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    of_component[components.find(static_cast<std::int32_t>(i))] += all[faces[i]].area_mm2;
+    of_patch[patches.find(static_cast<std::int32_t>(i))] += all[faces[i]].area_mm2;
+  }
+  // The smallest patch that is too small joins the neighbour with the longest common border, until none is.
+  for (;;) {
+    std::int32_t smallest = -1;
+    std::map<std::int32_t, std::map<std::int32_t, double>> neighbours;
+    for (const Border& b : edges) {
+      const std::int32_t p = patches.find(b.a), q = patches.find(b.b);
+      if (p == q || b.wall) continue;
+      neighbours[p][q] += b.length;
+      neighbours[q][p] += b.length;
+    }
+    for (const auto& [p, next] : neighbours)
+      if (of_patch[p] < options.least_share * of_component[components.find(p)] && (smallest < 0 || of_patch[p] < of_patch[smallest])) smallest = p;
+    if (smallest < 0) break;
+    std::int32_t best = -1;
+    double longest = -1;
+    for (const auto& [q, length] : neighbours[smallest])
+      if (length > longest) {
+        longest = length;
+        best = q;
+      }
+    const double area = of_patch[smallest] + of_patch[best];
+    patches.join(smallest, best);
+    of_patch[patches.find(best)] = area;
+  }
+  std::map<std::int32_t, Patch> by_root;
+  for (std::size_t i = 0; i < faces.size(); ++i) by_root[patches.find(static_cast<std::int32_t>(i))].push_back(faces[i]);
+  std::vector<Patch> result;
+  for (auto& [root, patch] : by_root) result.push_back(std::move(patch));
+  const auto area_of = [&](const Patch& p) {
+    double area = 0;
+    for (const std::int32_t f : p) area += all[f].area_mm2;
+    return area;
+  };
+  std::stable_sort(result.begin(), result.end(), [&](const Patch& a, const Patch& b) { return area_of(a) > area_of(b); });
+  return result;
+}
+
+Patch flat_cap(const TetMesh& mesh, const std::vector<BoundaryFace>& all, const Patch& faces, Vec3 up) {
+  double top = -std::numeric_limits<double>::max(), area = 0;
+  for (const std::int32_t f : faces) {
+    area += all[f].area_mm2;
+    for (const std::int32_t v : all[f].v) top = std::max(top, dot(up, mesh.points[v]));
+  }
+  if (faces.empty()) return {};
+  const double edge = std::sqrt(area / static_cast<double>(faces.size()));
+  Patch cap;
+  for (const std::int32_t f : faces) {
+    bool flat = dot(all[f].normal, up) > 0.99;
+    for (const std::int32_t v : all[f].v) flat = flat && dot(up, mesh.points[v]) > top - 0.02 * edge;
+    if (flat) cap.push_back(f);
+  }
+  if (cap.size() < 2) return {};  // the topmost triangle of a round end may lie level
+  return cap;
+}
+
+}  // namespace stackmesh

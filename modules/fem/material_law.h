@@ -1,0 +1,92 @@
+#pragma once
+#include <array>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/label_volume.h"
+
+namespace stackmesh {
+
+/// A piece of a step: y = offset + factor * x ^ exponent, for x up to `up_to`.
+struct LawPiece {
+  double up_to = std::numeric_limits<double>::infinity();
+  double factor = 1, exponent = 1, offset = 0;
+};
+
+/// One step of a law: from one quantity to the next, each in its own unit.
+struct LawStep {
+  std::string from, to, unit;     ///< unit of `to`: g/cm3, mg/cm3, kg/m3, t/mm3, or MPa, GPa, Pa
+  std::vector<LawPiece> pieces;   ///< ascending up_to; a power of a negative number counts as that of 0
+};
+
+/// Intensity to modulus, step by step: calibration, densities, Young's modulus.
+struct ModulusLaw {
+  std::string name, source;
+  std::vector<LawStep> steps;  ///< the first takes the image's intensity, the last gives a modulus
+
+  struct Value {
+    double young_mpa = 0;
+    double density_t_mm3 = 0;  ///< of the last density (apparent, where the law names it); 0: the law has none
+  };
+  Value at(double intensity) const;
+};
+
+/// What a label is made of: a constant modulus, or a law.
+struct LabelMaterial {
+  std::optional<double> young_mpa;
+  std::string law;                            ///< of MaterialPlan::laws; used where young_mpa is unset
+  double poisson = 0.3;
+  std::optional<double> density_t_mm3;        ///< unset: the law's, else 0 (none written)
+  std::optional<double> floor_mpa, ceiling_mpa;  ///< of a law: elements beyond are set to it, and counted
+};
+
+/// Shells of --skin.
+struct SkinMaterial {
+  double young_mpa = 0, poisson = 0.3, density_t_mm3 = 0;
+};
+
+struct MappingOptions {
+  bool integrate_modulus = true;  ///< the modulus field over each element; else the mean intensity, mapped once
+  int erode_px = 0;               ///< voxels of the label nearer to its border than this many are not used
+  int bins = 200;                 ///< materials per label in decks that cannot carry one modulus an element
+  bool equal_count = true;        ///< bins of as many elements each; else of as wide a range of modulus each
+  int threads = 0;
+};
+
+/// Supports and loads by the names of sets.
+struct LoadCase {
+  struct Held {
+    std::string set;
+    std::array<std::optional<double>, 3> value_mm;
+  };
+  struct Loaded {
+    std::string set;
+    std::optional<Vec3> force_n;          ///< in all, spread evenly over the faces
+    std::optional<double> pressure_mpa;   ///< against the faces
+  };
+  std::vector<Held> held;
+  std::vector<Loaded> loaded;
+};
+
+/// A law file, read and checked.
+struct MaterialPlan {
+  std::string path;
+  std::map<std::string, ModulusLaw> laws;
+  std::map<std::string, LabelMaterial> labels;  ///< by number or name; "*": all others
+  std::map<std::string, SkinMaterial> skins;
+  MappingOptions mapping;
+  LoadCase load_case;
+};
+
+/// The names of the laws that need no steps in a file.
+std::vector<std::string> known_laws();
+
+/// Reads a law file (docs/fem.md has its schema).
+/// @throws Error(input) naming file and entry: no JSON, an unknown or missing entry or unit, a calibration whose slope is not
+/// above 0, a law that does not end in a modulus
+MaterialPlan read_law(const std::string& path);
+
+}  // namespace stackmesh
