@@ -10,6 +10,7 @@ program=(
   libcgal-dev libtet1.5-dev libopenmesh-dev
   libinsighttoolkit5-dev libdcmtk-dev
   libtbb-dev libcli11-dev nlohmann-json3-dev
+  libjs-three libjs-chart.js # inside the HTML report
 )
 tests=(
   libgtest-dev libbenchmark-dev

@@ -38,7 +38,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
                      target == Target::volume ? "output: .vtu .msh .inp .feb .bdf .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
                                               : "output: .stl .ply .obj .off .vtp; repeatable")
       ->required()->allow_extra_args(false);
-  command.add_option("--report", a.reports, "report file, .json; repeatable")->allow_extra_args(false);
+  command.add_option("--report", a.reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
   a.contours.add_to(command);
   command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
   command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round")->capture_default_str();

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "interpolate/virtual_slices.h"
 #include "pipeline/stage_clock.h"
+#include "report/html_report.h"
 #include "volume/raise_order.h"
 
 namespace stackmesh {
@@ -34,7 +35,10 @@ class MeshRun {
     if (o_.target == Target::volume && is_sound()) clock_.run("volume", [&] { fill(); });
     clock_.run("validate", [&] { judge_rest(); });
     const std::string refusal = verdict();
-    if (refusal.empty()) clock_.run("write", [&] { write(); });
+    clock_.run("write", [&] {
+      if (refusal.empty()) write();
+      if (wants_html()) draw(refusal.empty());
+    });
     report_.peak_rss_mb = peak_memory_mb();
     write_reports();
     files_.commit();
@@ -56,7 +60,7 @@ class MeshRun {
         if (ends_with(path, ".mesh"))
           fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
     for (const std::string& path : o_.reports)
-      if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
+      if (!ends_with(path, ".json") && !ends_with(path, ".html")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json or .html");
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
   }
 
@@ -85,6 +89,10 @@ class MeshRun {
     const std::vector<std::size_t> counts = count_voxels(v);
     for (std::size_t k = 1; k < v.labels.size(); ++k)
       report_.labels[k - 1].input_volume_mm3 = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
+  }
+
+  bool wants_html() const {
+    return std::any_of(o_.reports.begin(), o_.reports.end(), [](const std::string& path) { return ends_with(path, ".html"); });
   }
 
   /// --strict must know of a lost component, too.
@@ -147,7 +155,7 @@ class MeshRun {
     pixel_mm_ = stack_.pixel_mm;
     const std::size_t n = stack_.sections.size();
     gap_mm_ = n > 1 ? (stack_.sections[n - 1].z_mm - stack_.sections[0].z_mm) / static_cast<double>(n - 1) : pixel_mm_;
-    stack_ = Stack();
+    if (!wants_html() || input_.volume) stack_ = Stack();  // contours are drawn in the report
   }
 
   bool is_too_large() {
@@ -375,10 +383,24 @@ class MeshRun {
            " pairs of triangles touch or cross; the other formats keep the checked surface");
   }
 
+  void draw(bool written) {
+    HtmlScene scene;
+    scene.surface = &surface_;
+    if (mesh_) scene.mesh = &*mesh_;
+    if (input_.volume) scene.volume = &*input_.volume;
+    else scene.sections = &stack_;
+    scene.stack_axis = axis_;
+    scene.space = world_ == WorldSpace::none ? "none" : world_ == WorldSpace::ras && written ? "ras" : "lps";
+    HtmlOptions options;
+    options.threads = o_.threads;
+    pictures_ = draw_pictures(scene, options);
+  }
+
   void write_reports() {
-    const std::string json = o_.reports.empty() ? "" : to_json(report_);
-    for (const std::string& path : o_.reports)
-      files_.write(path, [&](std::FILE* f) { std::fwrite(json.data(), 1, json.size(), f); });
+    for (const std::string& path : o_.reports) {
+      const std::string text = ends_with(path, ".html") ? to_html({{"mesh", &report_, &pictures_}}) : to_json(report_);
+      files_.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
+    }
   }
 
   const MeshRunOptions& o_;
@@ -393,6 +415,7 @@ class MeshRun {
   double pixel_mm_ = 1, gap_mm_ = 1;
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   std::optional<TetMesh> mesh_;
+  HtmlPictures pictures_;
   WorldSpace world_ = WorldSpace::lps;
   std::vector<std::int32_t> offending_;
   std::string refusal_, mend_, lost_detail_;

@@ -1,6 +1,19 @@
-# The run's figures as a report: JSON with the fields of modules/report/README.md.
+# The run's figures as a report: JSON with the fields of modules/report/README.md, and an HTML page with pictures.
+find_path(THREE_JS three.min.js PATHS /usr/share/javascript/three REQUIRED)
+find_path(CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
+set(page_names html css data_js tables_js sections_js solid_js main_js three_js orbit_js chart_js)
+set(page_own page.html page.css data.js tables.js sections.js solid.js main.js)
+list(TRANSFORM page_own PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/report/page/)
+set(page_paths ${page_own} ${THREE_JS}/three.min.js ${THREE_JS}/examples/js/controls/OrbitControls.js ${CHART_JS}/chart.min.js)
+set(page_cpp ${CMAKE_CURRENT_BINARY_DIR}/report/page_files.cpp)
+add_custom_command(OUTPUT ${page_cpp}
+  COMMAND ${CMAKE_COMMAND} -D "OUT=${page_cpp}" -D "NAMES=${page_names}" -D "FILES=${page_paths}" -P ${CMAKE_CURRENT_SOURCE_DIR}/report/page/embed.cmake
+  DEPENDS ${page_paths} ${CMAKE_CURRENT_SOURCE_DIR}/report/page/embed.cmake
+  COMMENT "Embedding the report page" VERBATIM)
 stackmesh_module(report
-  SOURCES run_report.cpp
-  HEADERS run_report.h
+  SOURCES run_report.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
+          histograms.cpp worst_places.cpp label_colours.cpp packed.cpp
+  HEADERS run_report.h html_report.h
   USES base model validate
-  PRIVATE nlohmann_json::nlohmann_json)
+  PRIVATE nlohmann_json::nlohmann_json ZLIB::ZLIB)
+target_sources(stackmesh_report PRIVATE ${page_cpp})

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "validate/boundaries.h"
 #include "validate/box_tree.h"
+#include "validate/face_rectangles.h"
 #include "validate/grid_walk.h"
 #include "validate/label_runs.h"
 #include "validate/statistics.h"
@@ -40,18 +41,6 @@ double triangle_distance2(const Vec3& p, const Corners& t) {
   }
   return std::min(
       {segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
-}
-
-/// An axis-parallel rectangle: a box of no thickness.
-struct Rectangle {
-  Vec3 low, high;
-};
-
-double rectangle_distance2(const Vec3& p, const Rectangle& r) {
-  const double x = std::max({0.0, r.low.x - p.x, p.x - r.high.x}),
-               y = std::max({0.0, r.low.y - p.y, p.y - r.high.y}),
-               z = std::max({0.0, r.low.z - p.z, p.z - r.high.z});
-  return x * x + y * y + z * z;
 }
 
 /// Distances from points to the nearest of some items; the points follow each other closely.
@@ -106,17 +95,6 @@ std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStri
             runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v));
   }
   return points;
-}
-
-std::vector<Rectangle> rectangles_of(const LabelRuns& runs, const std::vector<FaceStrip>& strips) {
-  std::vector<Rectangle> rectangles;
-  rectangles.reserve(strips.size());
-  for (const FaceStrip& s : strips) {
-    double low[3] = {s.begin - 0.5, s.u - 0.5, s.v - 0.5}, high[3] = {s.end - 0.5, s.u + 0.5, s.v + 0.5};
-    (s.sign > 0 ? low : high)[s.axis] = (s.sign > 0 ? high : low)[s.axis];
-    rectangles.push_back({runs.place(low[0], low[1], low[2]), runs.place(high[0], high[1], high[2])});
-  }
-  return rectangles;
 }
 
 /// Points spread by area: one in each of equal shares of it, placed in their triangle by a low-discrepancy
@@ -221,9 +199,7 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
     row.distance_mm = measure(from_faces, triangles, boxes, options.threads, triangle_distance2);
 
     const std::vector<Rectangle> rectangles = rectangles_of(runs, faces[l]);
-    boxes.assign(rectangles.size(), {});
-    for (std::size_t i = 0; i < rectangles.size(); ++i)
-      boxes[i].add(rectangles[i].low), boxes[i].add(rectangles[i].high);
+    boxes = boxes_of(rectangles);
     const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
     row.reverse_distance_samples = from_surface.size();
     row.reverse_distance_mm = measure(from_surface, rectangles, boxes, options.threads, rectangle_distance2);

@@ -1,0 +1,284 @@
+#include "report/display_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+#include "base/parallel.h"
+#include "report/packed.h"
+#include "report/shape.h"
+
+namespace stackmesh {
+namespace {
+
+using GridCell = std::array<std::uint16_t, 3>;
+
+GridCell on_grid(const Vec3& p, const DisplayGrid& grid) {
+  const auto at = [&](double x, double origin) {
+    return static_cast<std::uint16_t>(std::clamp(std::lround((x - origin) / grid.unit_mm), 0L, 65535L));
+  };
+  return {at(p.x, grid.origin_mm.x), at(p.y, grid.origin_mm.y), at(p.z, grid.origin_mm.z)};
+}
+
+std::uint64_t spread(std::uint64_t x) {  // three zeros' room between the bits
+  x = (x | x << 32) & 0x1f00000000ffffu;
+  x = (x | x << 16) & 0x1f0000ff0000ffu;
+  x = (x | x << 8) & 0x100f00f00f00f00fu;
+  x = (x | x << 4) & 0x10c30c30c30c30c3u;
+  return (x | x << 2) & 0x1249249249249249u;
+}
+
+/// Numbers `points` anew along a curve that keeps neighbours close: order[new] = old.
+std::vector<std::int32_t> curve_order(const std::vector<GridCell>& points) {
+  std::vector<std::uint64_t> code(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    code[i] = spread(points[i][0]) | spread(points[i][1]) << 1 | spread(points[i][2]) << 2;
+  std::vector<std::int32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return code[a] != code[b] ? code[a] < code[b] : a < b; });
+  return order;
+}
+
+std::string pack_positions(const std::vector<GridCell>& points, const std::vector<std::int32_t>& order) {
+  Bytes bytes;
+  GridCell last = {0, 0, 0};
+  for (const std::int32_t p : order) {
+    for (int k = 0; k < 3; ++k) bytes.signed_number(static_cast<int>(points[p][k]) - last[k]);
+    last = points[p];
+  }
+  return std::move(bytes.text);
+}
+
+std::vector<std::int32_t> inverse(const std::vector<std::int32_t>& order) {
+  std::vector<std::int32_t> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<std::int32_t>(i);
+  return place;
+}
+
+/// A quarter of a degree a step, up to 63.75.
+std::uint8_t angle_step(double degrees) { return static_cast<std::uint8_t>(std::clamp(std::lround(4 * degrees), 0L, 255L)); }
+
+struct DrawnTriangle {
+  std::array<std::int32_t, 3> v;
+  std::int32_t below, above;
+  std::uint8_t angle;
+};
+
+/// Vertices to draw, and triangles between them.
+struct Drawn {
+  std::vector<GridCell> points;
+  std::vector<float> distances_mm;
+  std::vector<DrawnTriangle> triangles;
+};
+
+/// Joins the vertices of each cell that bound the same labels.
+Drawn joined(const Drawn& fine, double cell_units) {
+  // A vertex's labels as the number of their set.
+  std::vector<std::int32_t> set_of(fine.points.size(), 0);
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> extended;  // (set, label) -> set
+  std::vector<std::vector<std::int32_t>> sets = {{}};
+  std::map<std::vector<std::int32_t>, std::int32_t> known = {{{}, 0}};
+  for (const DrawnTriangle& t : fine.triangles)
+    for (const std::int32_t v : t.v)
+      for (const std::int32_t label : {t.below, t.above}) {
+        const auto [it, fresh] = extended.emplace(std::pair(set_of[v], label), 0);
+        if (fresh) {
+          std::vector<std::int32_t> larger = sets[set_of[v]];
+          const auto at = std::lower_bound(larger.begin(), larger.end(), label);
+          if (at == larger.end() || *at != label) larger.insert(at, label);
+          const auto [found, is_new] = known.emplace(larger, static_cast<std::int32_t>(sets.size()));
+          if (is_new) sets.push_back(larger);
+          it->second = found->second;
+        }
+        set_of[v] = it->second;
+      }
+  struct Key {
+    std::int32_t x, y, z, set;
+    bool operator==(const Key& o) const { return x == o.x && y == o.y && z == o.z && set == o.set; }
+  };
+  struct Hash {
+    std::size_t operator()(const Key& k) const {
+      std::uint64_t h = 1469598103934665603u;
+      for (const std::int32_t part : {k.x, k.y, k.z, k.set}) h = (h ^ static_cast<std::uint32_t>(part)) * 1099511628211u;
+      return h ^ h >> 29;
+    }
+  };
+  std::unordered_map<Key, std::int32_t, Hash> clusters;
+  std::vector<std::int32_t> cluster_of(fine.points.size(), -1);
+  std::vector<std::array<double, 4>> sums;
+  Drawn coarse;
+  for (std::size_t v = 0; v < fine.points.size(); ++v) {
+    if (set_of[v] == 0) continue;  // of no triangle
+    const GridCell& p = fine.points[v];
+    const Key key = {static_cast<std::int32_t>(p[0] / cell_units), static_cast<std::int32_t>(p[1] / cell_units),
+                     static_cast<std::int32_t>(p[2] / cell_units), set_of[v]};
+    const std::int32_t c = clusters.emplace(key, static_cast<std::int32_t>(sums.size())).first->second;
+    if (c == static_cast<std::int32_t>(sums.size())) {
+      sums.push_back({0, 0, 0, 0});
+      if (!fine.distances_mm.empty()) coarse.distances_mm.push_back(0);
+    }
+    cluster_of[v] = c;
+    for (int k = 0; k < 3; ++k) sums[c][k] += p[k];
+    sums[c][3] += 1;
+    if (!fine.distances_mm.empty()) coarse.distances_mm[c] = std::max(coarse.distances_mm[c], fine.distances_mm[v]);
+  }
+  for (const auto& s : sums)
+    coarse.points.push_back({static_cast<std::uint16_t>(std::lround(s[0] / s[3])), static_cast<std::uint16_t>(std::lround(s[1] / s[3])),
+                             static_cast<std::uint16_t>(std::lround(s[2] / s[3]))});
+  // Triangles that fall on each other become one; it keeps the smallest angle of those it stands for.
+  struct Corner {
+    std::array<std::int32_t, 3> sorted;
+    std::int32_t triangle;
+  };
+  std::vector<Corner> corners;
+  for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
+    std::array<std::int32_t, 3> c = {cluster_of[fine.triangles[t].v[0]], cluster_of[fine.triangles[t].v[1]], cluster_of[fine.triangles[t].v[2]]};
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+    std::sort(c.begin(), c.end());
+    corners.push_back({c, static_cast<std::int32_t>(t)});
+  }
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+    return a.sorted != b.sorted ? a.sorted < b.sorted : a.triangle < b.triangle;
+  });
+  for (std::size_t i = 0, j; i < corners.size(); i = j) {
+    DrawnTriangle t = fine.triangles[corners[i].triangle];
+    for (std::int32_t& v : t.v) v = cluster_of[v];
+    for (j = i; j < corners.size() && corners[j].sorted == corners[i].sorted; ++j)
+      t.angle = std::min(t.angle, fine.triangles[corners[j].triangle].angle);
+    coarse.triangles.push_back(t);
+  }
+  return coarse;
+}
+
+}  // namespace
+
+DisplayGrid grid_over(const std::vector<Vec3>& points) {
+  DisplayGrid grid;
+  if (points.empty()) return grid;
+  Vec3 low = points[0], high = points[0];
+  for (const Vec3& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  grid.origin_mm = low;
+  if (extent > 0) grid.unit_mm = extent / 65535;
+  return grid;
+}
+
+PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm, const DisplayGrid& grid,
+                        const LabelIndex& index, std::size_t most) {
+  Drawn drawn;
+  drawn.distances_mm = distances_mm;
+  for (const Vec3& p : complex.points) drawn.points.push_back(on_grid(p, grid));
+  drawn.triangles.reserve(complex.triangles.size());
+  for (const InterfaceTriangle& t : complex.triangles) {
+    const auto angles = triangle_angles_deg(complex.points[t.v[0]], complex.points[t.v[1]], complex.points[t.v[2]]);
+    drawn.triangles.push_back({t.v, index(t.below), index(t.above), angle_step(std::min({angles[0], angles[1], angles[2]}))});
+  }
+  PackedMesh packed;
+  if (drawn.triangles.size() > most) {
+    // A cell about as wide as the edges of a surface of that many triangles.
+    double area2 = 0;
+    for (const InterfaceTriangle& t : complex.triangles)
+      area2 += norm(cross(complex.points[t.v[1]] - complex.points[t.v[0]], complex.points[t.v[2]] - complex.points[t.v[0]]));
+    double cell_mm = std::max(grid.unit_mm, std::sqrt(area2 / static_cast<double>(std::max<std::size_t>(1, most))));
+    Drawn coarse = joined(drawn, cell_mm / grid.unit_mm);
+    while (coarse.triangles.size() > most) {
+      cell_mm *= 1.15;
+      coarse = joined(drawn, cell_mm / grid.unit_mm);
+    }
+    packed.cell_mm = cell_mm;
+    drawn = std::move(coarse);
+  }
+
+  const std::vector<std::int32_t> order = curve_order(drawn.points), place = inverse(order);
+  for (DrawnTriangle& t : drawn.triangles) {
+    for (std::int32_t& v : t.v) v = place[v];
+    std::rotate(t.v.begin(), std::min_element(t.v.begin(), t.v.end()), t.v.end());
+  }
+  std::stable_sort(drawn.triangles.begin(), drawn.triangles.end(),
+                   [](const DrawnTriangle& a, const DrawnTriangle& b) { return a.v < b.v; });
+  Bytes corners, labels, angles, distances;
+  std::int32_t last = 0;
+  for (const DrawnTriangle& t : drawn.triangles) {
+    corners.number(static_cast<std::uint64_t>(t.v[0] - last));
+    corners.number(static_cast<std::uint64_t>(t.v[1] - t.v[0]));
+    corners.number(static_cast<std::uint64_t>(t.v[2] - t.v[0]));
+    last = t.v[0];
+    labels.number(static_cast<std::uint64_t>(t.below));
+    labels.number(static_cast<std::uint64_t>(t.above));
+    angles.byte(t.angle);
+  }
+  packed.vertices = drawn.points.size();
+  packed.elements = drawn.triangles.size();
+  packed.names = {"positions", "triangles", "labels", "angles"};
+  packed.chunks = {pack_positions(drawn.points, order), std::move(corners.text), std::move(labels.text), std::move(angles.text)};
+  if (!drawn.distances_mm.empty()) {
+    float largest = 0;
+    for (const float d : drawn.distances_mm) largest = std::max(largest, d);
+    packed.distance_unit_mm = largest > 0 ? static_cast<double>(largest) / 255 : 1;
+    for (const std::int32_t p : order)
+      distances.byte(static_cast<std::uint8_t>(std::lround(drawn.distances_mm[p] / packed.distance_unit_mm)));
+    packed.names.push_back("distances");
+    packed.chunks.push_back(std::move(distances.text));
+  }
+  return packed;
+}
+
+PackedMesh pack_tets(const TetMesh& mesh, const DisplayGrid& grid, const LabelIndex& index, std::size_t most, int threads) {
+  PackedMesh packed;
+  packed.one_of = std::max<std::size_t>(1, (mesh.tets.size() + most - 1) / std::max<std::size_t>(1, most));
+  // A number's multiple of the golden ratio spreads what is kept evenly over the mesh's own order.
+  std::vector<std::int32_t> kept;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (packed.one_of == 1 || static_cast<std::uint32_t>(t * 2654435769u) <= 0xffffffffu / packed.one_of) kept.push_back(static_cast<std::int32_t>(t));
+
+  std::vector<GridCell> points;
+  std::vector<std::int32_t> new_point(mesh.points.size(), -1);
+  for (const std::int32_t t : kept)
+    for (const std::int32_t v : mesh.tets[t])
+      if (new_point[v] < 0) {
+        new_point[v] = static_cast<std::int32_t>(points.size());
+        points.push_back(on_grid(mesh.points[v], grid));
+      }
+  const std::vector<std::int32_t> order = curve_order(points), place = inverse(order);
+
+  struct DrawnTet {
+    std::array<std::int32_t, 4> v;
+    std::int32_t label;
+    std::uint8_t angle;
+  };
+  std::vector<DrawnTet> tets(kept.size());
+  constexpr std::size_t kChunk = 1 << 13;
+  parallel_for((kept.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
+    for (std::size_t i = chunk * kChunk; i < std::min(kept.size(), (chunk + 1) * kChunk); ++i) {
+      const auto& v = mesh.tets[kept[i]];
+      DrawnTet& t = tets[i];
+      for (int k = 0; k < 4; ++k) t.v[k] = place[new_point[v[k]]];
+      std::sort(t.v.begin(), t.v.end());
+      t.label = index(mesh.labels[kept[i]]);
+      const auto cosines = dihedral_cosines(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]);
+      t.angle = angle_step(57.295779513082320877 * std::acos(std::clamp(*std::max_element(cosines.begin(), cosines.end()), -1.0, 1.0)));
+    }
+  });
+  std::stable_sort(tets.begin(), tets.end(), [](const DrawnTet& a, const DrawnTet& b) { return a.v < b.v; });
+  Bytes corners, labels, angles;
+  std::int32_t last = 0;
+  for (const DrawnTet& t : tets) {
+    corners.number(static_cast<std::uint64_t>(t.v[0] - last));
+    for (int k = 1; k < 4; ++k) corners.number(static_cast<std::uint64_t>(t.v[k] - t.v[k - 1]));
+    last = t.v[0];
+    labels.number(static_cast<std::uint64_t>(t.label));
+    angles.byte(t.angle);
+  }
+  packed.vertices = points.size();
+  packed.elements = tets.size();
+  packed.names = {"positions", "tets", "labels", "angles"};
+  packed.chunks = {pack_positions(points, order), std::move(corners.text), std::move(labels.text), std::move(angles.text)};
+  return packed;
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "report/display_mesh.h"
+#include "report/histograms.h"
+#include "report/html_report.h"
+#include "report/label_colours.h"
+#include "report/packed.h"
+#include "report/section_cuts.h"
+#include "report/worst_places.h"
+#include "validate/vertex_distances.h"
+
+namespace stackmesh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kWorstPlaces = 8;  // of each kind
+// Shares of the limit, in bytes before base64.
+constexpr double kSliceShare = 0.15, kCutShare = 0.2, kSurfaceShare = 0.25, kTetShare = 0.4;
+// What an element takes, deflated, on real meshes; rather too much.
+constexpr double kTriangleBytes = 6.5, kTetBytes = 7.5;
+
+Json vec(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Vec3 turned(const Vec3& v) { return {-v.x, -v.y, v.z}; }
+
+Frame frame_of(const LabelVolume& volume, int axis) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  double corner[3] = {0, 0, 0};
+  corner[u] = corner[v] = -0.5;
+  return {volume.world(corner[0], corner[1], corner[2]), {volume.axes[u], volume.axes[v], volume.axes[axis]}};
+}
+
+/// How a section is shown: which stack axis runs to the right and which down, so that radiologists find the
+/// patient's right on the left and the front, or the head, on top.
+Json orientation(const Frame& lps, bool anatomical) {
+  if (!anatomical) return {{"right", {{"axis", 0}, {"sign", 1}}}, {"down", {{"axis", 1}, {"sign", 1}}}, {"letters", nullptr}, {"view", "section"}};
+  const auto largest = [](const Vec3& v) {
+    const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+    return z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+  };
+  const int stacking = largest(lps.axes[2]);
+  const Vec3 right = stacking == 0 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, down = stacking == 2 ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
+  const char* letters = stacking == 2 ? "RLAP" : stacking == 1 ? "RLSI" : "APSI";  // left, right, top, bottom of the picture
+  const char* view = stacking == 2 ? "axial" : stacking == 1 ? "coronal" : "sagittal";
+  const int across = std::abs(dot(lps.axes[0], right)) >= std::abs(dot(lps.axes[1], right)) ? 0 : 1;
+  return {{"right", {{"axis", across}, {"sign", dot(lps.axes[across], right) < 0 ? -1 : 1}}},
+          {"down", {{"axis", 1 - across}, {"sign", dot(lps.axes[1 - across], down) < 0 ? -1 : 1}}},
+          {"letters", letters},
+          {"view", view}};
+}
+
+LabelIndex labels_of(const HtmlScene& scene) {
+  std::map<Label, LabelInfo> labels = {{0, {0, ""}}};
+  if (scene.volume != nullptr)
+    for (const LabelInfo& l : scene.volume->labels) labels[l.number] = l;
+  if (scene.sections != nullptr)
+    for (const LabelInfo& l : scene.sections->labels) labels[l.number] = l;
+  for (const InterfaceTriangle& t : scene.surface->triangles)
+    for (const Label number : {t.below, t.above})
+      if (labels.count(number) == 0) labels[number] = {number, ""};
+  std::vector<LabelInfo> list;
+  for (const auto& [number, info] : labels) list.push_back(info);
+  return LabelIndex(std::move(list));
+}
+
+class Pictures {
+ public:
+  Pictures(const HtmlScene& scene, const HtmlOptions& options)
+      : scene_(scene), options_(options), index_(labels_of(scene)), bytes_(0.75 * static_cast<double>(options.bytes_limit)) {}
+
+  HtmlPictures draw() {
+    place();
+    describe_labels();
+    if (options_.labels && scene_.volume != nullptr) slices();
+    if (options_.labels && scene_.sections != nullptr) contours();
+    cuts();
+    if (scene_.volume != nullptr && !scene_.surface->triangles.empty()) distances();
+    meshes();
+    histograms();
+    places();
+    HtmlPictures out;
+    out.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (const Blob& b : blobs_) out.blobs.emplace_back(b.name(), base64(b.bytes()));
+    return out;
+  }
+
+ private:
+  /// The frame of the sections, and the heights of sections and mid-gaps.
+  void place() {
+    Frame lps;
+    std::vector<double> heights;
+    if (scene_.volume != nullptr) {
+      const LabelVolume& v = *scene_.volume;
+      const int axis = scene_.stack_axis;
+      lps = frame_of(v, axis);
+      for (int k = 0; k < v.size[axis]; ++k) heights.push_back(k * v.spacing_mm[axis]);
+      pixel_ = {v.spacing_mm[(axis + 1) % 3], v.spacing_mm[(axis + 2) % 3]};
+    } else if (scene_.sections != nullptr) {
+      lps = scene_.sections->frame;
+      for (const Section& s : scene_.sections->sections)
+        if (!s.interpolated) heights.push_back(s.z_mm);
+      pixel_ = {scene_.sections->pixel_mm, scene_.sections->pixel_mm};
+    }
+    frame_ = lps;
+    if (scene_.space == "ras") {
+      frame_.origin = turned(lps.origin);
+      for (Vec3& a : frame_.axes) a = turned(a);
+    }
+    Json planes = Json::array();
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+      if (k > 0) {
+        heights_.push_back(0.5 * (heights[k - 1] + heights[k]));
+        planes.push_back({{"z", heights_.back()}, {"section", static_cast<double>(k) - 0.5}});
+      }
+      heights_.push_back(heights[k]);
+      planes.push_back({{"z", heights[k]}, {"section", k}});
+    }
+    drawing_.unit_mm = std::min(pixel_[0], pixel_[1]) / 64;
+    drawing_.tolerance_mm = 2 * drawing_.unit_mm;
+    drawing_.threads = options_.threads;
+    json_["space"] = scene_.space;
+    json_["frame"] = {{"origin", vec(frame_.origin)}, {"axes", {vec(frame_.axes[0]), vec(frame_.axes[1]), vec(frame_.axes[2])}}};
+    json_["orientation"] = orientation(lps, scene_.space != "none");
+    json_["pixel_mm"] = pixel_;
+    json_["planes"] = planes;
+  }
+
+  void describe_labels() {
+    Json list = Json::array();
+    const std::vector<std::string> colours = label_colours(index_.labels());
+    for (std::size_t l = 0; l < colours.size(); ++l)
+      list.push_back({{"label", index_.labels()[l].number}, {"name", index_.labels()[l].name}, {"colour", colours[l]}});
+    json_["labels"] = list;
+  }
+
+  /// Adds chunks as a blob; what the page needs to find them.
+  Json add(const std::string& name, const std::vector<std::string>& chunks) {
+    blobs_.emplace_back(name);
+    blobs_.back().add(chunks, options_.threads);
+    return {{"blob", name}, {"offsets", blobs_.back().offsets()}};
+  }
+
+  void slices() {
+    const PixelWindow window = window_of_labels(*scene_.volume, scene_.stack_axis);
+    std::vector<std::string> chunks = pack_slices(*scene_.volume, scene_.stack_axis, window, index_, options_.threads);
+    Json j = add("slices", chunks);
+    std::size_t step = 1;
+    while (static_cast<double>(blobs_.back().bytes().size()) > kSliceShare * bytes_ && step < chunks.size()) {  // leave slices out
+      blobs_.pop_back();
+      step *= 2;
+      std::vector<std::string> some(chunks.size());
+      for (std::size_t k = 0; k < chunks.size(); k += step) some[k] = chunks[k];
+      j = add("slices", some);
+    }
+    j["window"] = {window.x, window.y, window.width, window.height};
+    j["step"] = step;
+    json_["slices"] = j;
+  }
+
+  void contours() {
+    std::vector<std::string> chunks;
+    for (const Section& s : scene_.sections->sections)
+      if (!s.interpolated) chunks.push_back(draw_section(*scene_.sections, s, index_, drawing_));
+    Json j = add("contours", chunks);
+    j["unit_mm"] = drawing_.unit_mm;
+    json_["contours"] = j;
+  }
+
+  void cuts() {
+    if (heights_.empty()) return;
+    CurveDrawing drawing = drawing_;
+    Json j = add("cuts", cut_complex(*scene_.surface, frame_, heights_, index_, drawing));
+    while (static_cast<double>(blobs_.back().bytes().size()) > kCutShare * bytes_ && drawing.tolerance_mm < 0.5 * pixel_[0]) {
+      blobs_.pop_back();
+      drawing.tolerance_mm *= 2;
+      j = add("cuts", cut_complex(*scene_.surface, frame_, heights_, index_, drawing));
+    }
+    j["unit_mm"] = drawing.unit_mm;
+    j["tolerance_mm"] = drawing.tolerance_mm;
+    json_["cuts"] = j;
+  }
+
+  void distances() {
+    if (scene_.space != "ras") {
+      distances_mm_ = vertex_distances(*scene_.surface, *scene_.volume, scene_.stack_axis, options_.threads);
+      return;
+    }
+    InterfaceComplex lps = *scene_.surface;
+    for (Vec3& p : lps.points) p = turned(p);
+    distances_mm_ = vertex_distances(lps, *scene_.volume, scene_.stack_axis, options_.threads);
+  }
+
+  Json describe(const PackedMesh& m, const std::string& name, const DisplayGrid& grid, std::size_t of) {
+    Json j = add(name, m.chunks);
+    j["arrays"] = m.names;
+    j["vertices"] = m.vertices;
+    j["elements"] = m.elements;
+    j["of"] = of;
+    j["origin_mm"] = vec(grid.origin_mm);
+    j["unit_mm"] = grid.unit_mm;
+    return j;
+  }
+
+  void meshes() {
+    if (scene_.surface->triangles.empty()) return;
+    const DisplayGrid grid = grid_over(scene_.surface->points);
+    const PackedMesh surface = pack_surface(*scene_.surface, distances_mm_, grid, index_,
+                                            static_cast<std::size_t>(std::min(400e3, kSurfaceShare * bytes_ / kTriangleBytes)));
+    Json j = describe(surface, "surface", grid, scene_.surface->triangles.size());
+    j["cell_mm"] = surface.cell_mm;
+    j["distance_unit_mm"] = surface.distance_unit_mm;
+    json_["surface"] = j;
+    if (scene_.mesh == nullptr || scene_.mesh->tets.empty()) return;
+    const PackedMesh tets =
+        pack_tets(*scene_.mesh, grid, index_, static_cast<std::size_t>(std::min(1e6, kTetShare * bytes_ / kTetBytes)), options_.threads);
+    j = describe(tets, "tets", grid, scene_.mesh->tets.size());
+    j["one_of"] = tets.one_of;
+    json_["tets"] = j;
+  }
+
+  void histograms() {
+    Json list = Json::array();
+    for (const Histogram& h : make_histograms(*scene_.surface, scene_.mesh, distances_mm_, options_.threads))
+      list.push_back({{"name", h.name}, {"title", h.title}, {"unit", h.unit}, {"low", h.low}, {"high", h.high}, {"counts", h.counts},
+                      {"values", h.values}, {"smallest", h.smallest}, {"median", h.median}, {"largest", h.largest}});
+    json_["histograms"] = list;
+  }
+
+  void places() {
+    Json list = Json::array();
+    const double apart_mm = 5 * std::max(pixel_[0], pixel_[1]);
+    for (const WorstPlace& p : find_worst_places(*scene_.surface, scene_.mesh, distances_mm_, kWorstPlaces, apart_mm)) {
+      Json corners = Json::array(), labels = Json::array();
+      for (const Vec3& c : p.corners_mm) corners.push_back(vec(c));
+      for (const Label l : p.labels) labels.push_back(index_(l));
+      list.push_back({{"kind", p.kind}, {"figure", p.figure}, {"at_mm", vec(p.at_mm)}, {"corners_mm", corners}, {"labels", labels}});
+    }
+    json_["worst"] = list;
+  }
+
+  const HtmlScene& scene_;
+  const HtmlOptions& options_;
+  const LabelIndex index_;
+  const double bytes_;
+  Frame frame_;
+  std::array<double, 2> pixel_ = {1, 1};
+  std::vector<double> heights_;
+  CurveDrawing drawing_;
+  std::vector<float> distances_mm_;
+  std::vector<Blob> blobs_;
+  Json json_ = Json::object();
+};
+
+}  // namespace
+
+HtmlPictures draw_pictures(const HtmlScene& scene, const HtmlOptions& options) {
+  if (scene.stack_axis < 0 || scene.stack_axis > 2)
+    fail_usage("stacking axis " + std::to_string(scene.stack_axis), "HTML report", "use 0, 1 or 2");
+  return Pictures(scene, options).draw();
+}
+
+}  // namespace stackmesh
