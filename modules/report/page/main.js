@@ -16,7 +16,10 @@ async function main() {
   const hasSections = await sections.start();
   if (hasSections) sections.legend();
   else byId('section-canvas').closest('.view').hidden = true;
+  if (hasSections) solid.sectionHeight = sections.planes[sections.index].z;
   const hasSolid = await solid.start();
+  if (hasSolid && hasSections) sections.moved = z => solid.sectionMoved(z);
+  if (!hasSections) byId('clip-axis').querySelector('[value=section]').remove();
 
   const changed = () => {
     const on = shown.filter((s, i) => s && i > 0).length;
@@ -72,7 +75,7 @@ function listWorst(worst, show) {
     const [name, unit] = kinds[w.kind];
     body.append(element('tr', {},
         element('td', {'data-v': w.number, text: w.number}), element('td', {class: 'text', text: name}),
-        element('td', {'data-v': w.figure, text: figure(w.figure) + unit}), element('td', {class: 'text', text: names}),
+        element('td', {'data-v': w.figure, text: w.figure.toFixed(w.kind === 'distance' ? 2 : 1) + unit}), element('td', {class: 'text', text: names}),
         element('td', {text: placeText(w.at_mm)}), element('td', {'data-v': plane === null ? '' : plane, text: plane === null ? '' : sectionText(plane)}),
         element('td', {class: 'jump'}, element('button', {type: 'button', text: 'Show', 'aria-label': 'Show place ' + w.number + ' in the pictures', onclick: () => show(w.at_mm, w.corners_mm, w.kind === 'dihedral')}))));
   }

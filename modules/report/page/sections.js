@@ -204,6 +204,7 @@ class SectionView {
         (here.length ? '; marked: ' + here.join(', ') : '');
     byId('section-text').textContent = text;
     this.slider.setAttribute('aria-valuetext', text);
+    if (this.moved) this.moved(plane.z);
     await this.draw();
   }
 
@@ -266,8 +267,8 @@ class SectionView {
         for (const l of lines) if (this.shown[l.left] || this.shown[l.right]) this.trace(path, l.points, m);
         g.setLineDash([]);
         g.lineJoin = 'round';
-        g.strokeStyle = 'rgba(255,255,255,.85)';
-        g.lineWidth = 4 * line;
+        g.strokeStyle = 'rgba(255,255,255,.7)';
+        g.lineWidth = 3.2 * line;
         g.stroke(path);
         g.strokeStyle = meshColours[n % meshColours.length];
         g.lineWidth = 1.7 * line;
@@ -487,9 +488,11 @@ class SectionView {
   async keep(index = this.index) {
     if (document.querySelector('[data-kept="' + index + '"]')) return;
     const text = sectionText(this.planes[index].section), source = await this.thumbnail(index);
+    const name = text.charAt(0).toUpperCase() + text.slice(1);
     const figureElement = element('figure', {'data-kept': index},
-        element('img', {src: source, alt: 'Labels and the mesh’s cut, ' + text}),
-        element('figcaption', {text: text.charAt(0).toUpperCase() + text.slice(1)}));
+        element('button', {type: 'button', title: 'Show it above', onclick: () => this.go(index)},
+            element('img', {src: source, alt: name + ': labels and the mesh’s cut'}), element('figcaption', {text: name})));
+    byId('kept-sections').hidden = byId('kept-title').hidden = false;
     const box = byId('kept-sections');
     const after = [...box.children].find(f => Number(f.dataset.kept) > index);
     box.insertBefore(figureElement, after || null);

@@ -29,7 +29,9 @@ class SolidView {
   async start() {
     const first = page.meshes.findIndex(m => m.pictures.surface);
     if (first < 0) return this.missing('There is no surface to show.');
+    const trial = document.createElement('canvas');
     try {
+      if (!trial.getContext('webgl2') && !trial.getContext('webgl')) throw new Error('no WebGL');
       this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, preserveDrawingBuffer: true});
     } catch (e) {
       return this.missing('This browser offers no WebGL, so the mesh cannot be turned in 3-D here. Everything else on this page works.');
@@ -42,8 +44,8 @@ class SolidView {
     this.camera = new THREE.PerspectiveCamera(32, 1, 1, 1000);
     this.camera.up.set(0, 0, 1);
     this.scene.add(this.camera);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8f979f, 0.62));
-    const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa2aa, 0.72));
+    const lamp = new THREE.DirectionalLight(0xffffff, 0.5);
     lamp.position.set(-0.6, 0.8, 1);
     this.camera.add(lamp);
     this.plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
@@ -126,8 +128,10 @@ class SolidView {
     this.cap = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshPhongMaterial({vertexColors: THREE.VertexColors, flatShading: true, side: THREE.DoubleSide, shininess: 0,
       specular: 0x000000, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
     this.cap.frustumCulled = false;
+    this.capLit = this.cap.material;
+    this.capFlat = new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
     this.group.add(this.cap);
-    const glow = new THREE.MeshBasicMaterial({color: 0xe00030, transparent: true, opacity: 0.75, side: THREE.DoubleSide, depthTest: false});
+    const glow = new THREE.MeshBasicMaterial({color: 0xe00030, transparent: true, opacity: 0.5, side: THREE.DoubleSide, depthTest: false});
     this.mark = new THREE.Mesh(new THREE.BufferGeometry(), glow);
     this.mark.renderOrder = 5;
     this.mark.frustumCulled = false;
@@ -218,6 +222,10 @@ class SolidView {
       this.camera.getWorldDirection(n);
       const c = n.dot(new THREE.Vector3(...m.middle));
       low = c - m.radius; high = c + m.radius;
+    } else if (axis === 'section') {
+      const {axes, origin} = m.p.frame;
+      n.set(...axes[2]);
+      low = high = n.dot(new THREE.Vector3(...origin.map((x, k) => x - m.centre[k]))) + this.sectionHeight;
     } else {
       const k = 'xyz'.indexOf(axis);
       n.setComponent(k, 1);
@@ -231,7 +239,8 @@ class SolidView {
 
   updateCut() {
     const on = this.cut.axis !== 'none';
-    byId('clip-slider').disabled = byId('clip-flip').disabled = byId('clip-whole').disabled = !on;
+    byId('clip-flip').disabled = byId('clip-whole').disabled = !on;
+    byId('clip-slider').disabled = !on || this.cut.axis === 'section';
     this.cap.visible = this.capEdges.visible = on;
     const planes = on ? [this.plane] : [];
     if (on) this.placePlane();
@@ -246,12 +255,13 @@ class SolidView {
   tellCut() {
     const text = byId('clip-text'), p = this.mesh.p;
     if (this.cut.axis === 'none') { text.textContent = ''; return; }
-    const where = this.cut.axis === 'view' ? 'The cut faces you' : 'The cut is at ' + this.cut.axis + ' = ' + (this.cut.at + this.mesh.centre['xyz'.indexOf(this.cut.axis)]).toFixed(1) + ' mm';
+    const where = this.cut.axis === 'view' ? 'The cut faces you' : this.cut.axis === 'section' ? 'The cut is at the section shown' : 'The cut is at ' + this.cut.axis + ' = ' + (this.cut.at + this.mesh.centre['xyz'.indexOf(this.cut.axis)]).toFixed(1) + ' mm';
     text.textContent = where + (!this.mesh.tets ? '; this mesh has no tetrahedra, so its surface is seen from inside.'
         : '; it meets ' + figure(this.cutTets) + ' tetrahedra' + (p.tets.one_of > 1 ? ' of those shown (one in ' + p.tets.one_of + ')' : '') + '.');
   }
 
   fillCap() {
+    this.cap.material = this.cut.whole ? this.capLit : this.capFlat;
     const {normal, constant} = this.plane, t = this.mesh.tets, points = [], colours = [], lines = [];
     this.cutTets = 0;
     if (t) {
@@ -345,6 +355,14 @@ class SolidView {
     if (distance.disabled && this.colour === 'distance') byId('solid-colour').value = this.colour = 'label';
   }
 
+  /** The section picture shows another height. */
+  sectionMoved(height) {
+    this.sectionHeight = height;
+    if (this.cut.axis !== 'section') return;
+    this.updateCut();
+    this.render();
+  }
+
   listen() {
     const c = this.canvas;
     byId('solid-colour').addEventListener('change', e => { this.colour = e.target.value; this.recolour(); });
@@ -384,7 +402,7 @@ class SolidView {
 
   stepCut(step) {
     const slider = byId('clip-slider');
-    if (this.cut.axis === 'none') { byId('clip-axis').value = this.cut.axis = 'z'; }
+    if (this.cut.axis === 'none' || this.cut.axis === 'section') byId('clip-axis').value = this.cut.axis = 'z';
     slider.value = Number(slider.value) + step;
     this.cut.share = slider.value / 1000;
     this.updateCut();
@@ -415,12 +433,23 @@ class SolidView {
     this.controls.update();
   }
 
+  /** How far to stand off so that the mesh's box fills the picture, seen along -direction. */
+  fitDistance(direction) {
+    const m = this.mesh, tall = Math.tan(this.camera.fov * Math.PI / 360) * 0.93, wide = tall * (this.camera.aspect || 1);
+    const back = direction, right = new THREE.Vector3(0, 0, 1).cross(back).normalize(), up = back.clone().cross(right);
+    let distance = 1e-6;
+    for (let corner = 0; corner < 8; ++corner) {
+      const p = new THREE.Vector3(...[0, 1, 2].map(k => ((corner >> k & 1) ? m.high[k] : m.low[k]) - m.middle[k]));
+      distance = Math.max(distance, p.dot(back) + Math.abs(p.dot(right)) / wide, p.dot(back) + Math.abs(p.dot(up)) / tall);
+    }
+    return distance;
+  }
+
   /** Looks from a side of the body; the patient's front is -y in LPS and +y in RAS. */
   turn(side) {
     const ras = this.mesh.p.space === 'ras', f = ras ? 1 : -1;
     const from = {start: [0.45 * -f, f, 0.35], front: [0, f, 0], back: [0, -f, 0], left: [-f, 0, 0], right: [f, 0, 0], top: [0, 0.001 * f, 1], bottom: [0, 0.001 * f, -1]}[side];
-    const m = this.mesh, direction = new THREE.Vector3(...from).normalize(), aspect = Math.min(1, this.camera.aspect || 1);
-    const distance = 1.02 * m.radius / Math.sin(this.camera.fov * Math.PI / 360) / aspect;
+    const m = this.mesh, direction = new THREE.Vector3(...from).normalize(), distance = this.fitDistance(direction);
     this.controls.target.set(...m.middle);
     this.camera.position.set(...m.middle).addScaledVector(direction, distance);
     this.camera.near = distance / 200;
@@ -449,7 +478,7 @@ class SolidView {
     for (const c of points) size = Math.max(size, Math.hypot(...c.map((x, k) => x - p[k])));
     const distance = Math.min(2 * m.radius, Math.max(14 * size, 0.35 * m.radius));
     if (inside) {
-      const axis = this.cut.axis === 'none' || this.cut.axis === 'view' ? 'y' : this.cut.axis, k = 'xyz'.indexOf(axis);
+      const axis = 'xyz'.includes(this.cut.axis) ? this.cut.axis : 'y', k = 'xyz'.indexOf(axis);
       byId('clip-axis').value = this.cut.axis = axis;
       this.cut.share = Math.max(0, Math.min(1, (p[k] - m.low[k]) / Math.max(1e-9, m.high[k] - m.low[k])));
       byId('clip-slider').value = Math.round(1000 * this.cut.share);
