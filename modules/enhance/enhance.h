@@ -20,6 +20,8 @@ struct EnhanceOptions {
       deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default half a pixel
   std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels
   std::optional<double> edge_max_mm;  ///< by curvature: default a tenth of the label's box
+  std::optional<std::size_t>
+      target_tets;         ///< by curvature: edges get longer until about that many tetrahedra are expected
   double gradation = 1.3;             ///< largest ratio of neighbouring edge lengths
   double feature_deg = 70;      ///< straight chains of edges that bend by more are ridges, from 8 pixels on
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above it ("not below, and not worse")
@@ -39,6 +41,8 @@ struct EnhanceResult {
   InterfaceComplex complex;  ///< stack coordinates, mm
   std::string level;         ///< "enhanced", "smoothed" or "stitched": how far it came
   EnhanceCounts counts;
+  std::size_t expected_triangles = 0, expected_tets = 0;  ///< from the sizes, before remeshing
+  double coarsened = 1;  ///< by what edges were made longer for target_tets
   std::vector<std::string> warnings;
 };
 

@@ -63,6 +63,7 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm
     if (t.patch < 0) continue;
     Face f;
     f.patch = t.patch;
+    f.triangle = static_cast<std::int32_t>(&t - mesh.triangles.data());
     const Vec3 area = mesh.area_vector(t.v);
     const double size = norm(area);
     for (int k = 0; k < 3; ++k) {
@@ -117,7 +118,7 @@ std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t pa
   }
   const Vec3 n = cross(face->p[1] - face->p[0], face->p[2] - face->p[0]);
   const double size = dot(n, n);
-  if (!(size > 0)) return Foot{foot, {}};
+  if (!(size > 0)) return Foot{foot, {}, face->triangle, near};
   Vec3 bulged, normal;
   for (int k = 0; k < 3; ++k) {
     const double w = dot(n, cross(face->p[(k + 1) % 3] - foot, face->p[(k + 2) % 3] - foot)) / size;
@@ -125,7 +126,7 @@ std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t pa
     normal = normal + w * face->n[k];
   }
   const double l = norm(normal);
-  return Foot{foot + 0.6 * (bulged - foot), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n};
+  return Foot{foot + 0.6 * (bulged - foot), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, face->triangle, near};
 }
 
 std::optional<Vec3> Reference::nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const {

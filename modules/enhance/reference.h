@@ -18,6 +18,8 @@ class Reference {
 
   struct Foot {
     Vec3 point, normal;
+    std::int32_t triangle = -1;  ///< of the mesh, as it was numbered at construction
+    double distance_mm = 0;      ///< to the plain triangle
   };
   /// Nearest point on triangles of that patch, not further than `reach_mm`.
   std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm) const;
@@ -26,6 +28,14 @@ class Reference {
 
   /// What tells curves apart: the patches that meet there.
   static std::uint64_t curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b);
+
+  /// Centres of its triangles, with their patches.
+  std::size_t face_count() const { return faces_.size(); }
+  Vec3 centre(std::size_t face) const {
+    const auto& p = faces_[face].p;
+    return (1 / 3.0) * (p[0] + p[1] + p[2]);
+  }
+  std::int32_t patch(std::size_t face) const { return faces_[face].patch; }
 
  private:
   struct Cells {
@@ -42,7 +52,7 @@ class Reference {
   };
   struct Face {
     std::array<Vec3, 3> p, n;  ///< corners and their normals
-    std::int32_t patch;
+    std::int32_t patch, triangle;
   };
   /// What rules a face out at a glance: its patch and the ball round it.
   struct Ball {

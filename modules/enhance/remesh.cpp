@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "enhance/local_operations.h"
+#include "enhance/sizing.h"
 #include "enhance/smoothing.h"
 
 namespace stackmesh {
@@ -26,6 +27,7 @@ class Remesher {
       collapse_short(round == 0 ? 8 : 3, (round == 0 ? 8 : 15) * kDegree);
       flip_all(2 * kDegree, round + 1 < o_.rounds, 2);
       relocate_all(round + 2 < o_.rounds ? 1 : 2);
+      if (o_.deviation_mm > 0 && round + 1 < o_.rounds) shorten_where_off();
       progress.advance(0.3 + 0.5 * (round + 1) / o_.rounds);
     }
     for (int pass = 0; pass < o_.fit_passes; ++pass) fit_reference();
@@ -155,13 +157,12 @@ class Remesher {
       });
   }
 
-  /// A step of a least-squares fit: vertices move along the normals by the mean distance to the reference of
-  /// samples on their triangles, weighted by the vertex's share in the sample.
+  /// A step of a fit to the reference: vertices move by the mean distance, along the triangles' normals, of samples on
+  /// their triangles, weighted by the vertex's share in the sample; over-relaxed, as neighbours move alike.
   void fit_reference() {
-    static constexpr double kAt[3][3] = {
-        {2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
-    std::vector<std::array<double, 3>> off(mesh_.triangles.size(),
-                                           {0, 0, 0});  // per corner: weighted distance
+    static constexpr double kAt[3][3] = {{2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
+    constexpr double kOverRelaxed = 2;
+    std::vector<std::array<double, 3>> off(mesh_.triangles.size(), {0, 0, 0});  // per corner: mean distance
     constexpr std::size_t kChunk = 512;
     parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(off.size(), (chunk + 1) * kChunk); ++t) {
@@ -170,20 +171,14 @@ class Remesher {
         const Vec3 a = mesh_.area_vector(m.v);
         const double l = norm(a), reach = size_[m.v[0]];
         if (!(l > 0)) continue;
-        std::array<double, 3> sum = {0, 0, 0}, weight = {0, 0, 0};
         for (const auto& w : kAt) {
-          const Vec3 p =
-              w[0] * mesh_.points[m.v[0]] + w[1] * mesh_.points[m.v[1]] + w[2] * mesh_.points[m.v[2]];
+          Vec3 p;
+          for (int k = 0; k < 3; ++k) p = p + w[k] * mesh_.points[m.v[k]];
           const auto foot = reference_.nearest(p, m.patch, reach);
           if (!foot) continue;
           const double d = dot(foot->point - p, (1 / l) * a);
-          for (int k = 0; k < 3; ++k) {
-            sum[k] += w[k] * d;
-            weight[k] += w[k];
-          }
+          for (int k = 0; k < 3; ++k) off[t][k] += w[k] * d;  // the shares of a corner add up to one
         }
-        for (int k = 0; k < 3; ++k)
-          if (weight[k] > 0) off[t][k] = sum[k] / weight[k];
       }
     });
     MoveLimits keep;
@@ -201,11 +196,38 @@ class Remesher {
         sum = sum + off[t][k] * a;
         weight += norm(a);
       }
-      Vec3 move = weight > 0 ? (1 / weight) * sum : Vec3{};
+      Vec3 move = weight > 0 ? (kOverRelaxed / weight) * sum : Vec3{};
       if (mesh_.flat[v]) move.z = 0;
       const double l = norm(move), most = 0.2 * size_[v];
       return mesh_.points[v] + (l > most ? most / l : 1.0) * move;
     });
+  }
+
+  /// Sizes shrink where centres of the reference's triangles are further from the mesh than allowed.
+  void shorten_where_off() {
+    double longest = 0;
+    for (std::size_t v = 0; v < size_.size(); ++v)
+      if (!mesh_.star[v].empty()) longest = std::max(longest, size_[v]);
+    const Reference now(mesh_, 0.5 * longest);
+    std::vector<float> factor(mesh_.triangles.size(), 1);
+    std::vector<std::pair<std::int32_t, float>> off(reference_.face_count(), {-1, 1.0f});
+    constexpr std::size_t kChunk = 512;
+    parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
+      for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); ++f) {
+        const auto foot = now.nearest(reference_.centre(f), reference_.patch(f), 2 * longest);
+        if (foot && foot->distance_mm > o_.deviation_mm)
+          off[f] = {foot->triangle, static_cast<float>(std::max(0.5, std::sqrt(o_.deviation_mm / foot->distance_mm)))};
+      }
+    });
+    for (const auto& [t, x] : off)
+      if (t >= 0) factor[t] = std::min(factor[t], x);
+    std::vector<double> shorter = size_;
+    for (std::size_t t = 0; t < factor.size(); ++t)
+      if (factor[t] < 1)
+        for (std::int32_t v : mesh_.triangles[t].v)
+          shorter[v] = std::min(shorter[v], std::max(std::min(size_[v], o_.shortest_mm), 0.9 * factor[t] * size_[v]));
+    size_ = shorter;
+    grade_sizes(mesh_, o_.gradation, size_);
   }
 
   std::size_t improve_worst() {

@@ -10,12 +10,15 @@ namespace stackmesh {
 
 struct RemeshOptions {
   int rounds = 4;               ///< of split, collapse, flip, relocate
-  int fit_passes = 3;           ///< of the least-squares fit to the reference
+  int fit_passes = 6;                     ///< of the least-squares fit to the reference
   int finish_sweeps = 4;        ///< over the worst triangles
   double good_angle_deg = 32;   ///< triangles below are worked on at the end
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above ("not below, and not worse")
   double clearance_rel = 0.1;   ///< of the edge length: sheets come no closer
   double deviation_rel = 0.15;  ///< of the edge length: how far a collapse or flip may leave the surface
+  double deviation_mm = 0;      ///< where the reference is further from the mesh, edges get shorter; 0: nowhere
+  double shortest_mm = 0;       ///< but not below this
+  double gradation = 1.3;
   int threads = 0;
 };
 

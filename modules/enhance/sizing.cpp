@@ -12,6 +12,8 @@ namespace stackmesh {
 namespace {
 
 constexpr std::size_t kChunk = 1024;
+constexpr double kAcross = 3;       // edges of a thin wall are at most this many times as long as it is thick
+constexpr double kLossShare = 0.1;  // of a label's volume that chords may cut off, before the fit gives it back
 
 template <class Body>
 void for_range(std::size_t count, int threads, Body body) {
@@ -32,9 +34,9 @@ class Sizing {
 
   std::vector<double> run() {
     asked();
-    if (!o_.edge_length_mm) curvature();
+    curvature();
     thickness();
-    grade();
+    grade_sizes(mesh_, o_.gradation, size_);
     return std::move(size_);
   }
 
@@ -111,13 +113,18 @@ class Sizing {
           }
       smooth[v] = sum / count;
     });
+    bend_ = std::move(smooth);
+    if (o_.edge_length_mm) return;
     for_range(n, o_.threads, [&](std::int32_t v) {
-      if (fixed_[v]) return;
-      const double r = smooth[v] > 0 ? 1 / smooth[v] : 1e300, d = std::min(o_.deviation_mm, r),
-                   most = size_[v];
-      if (r < 1e6 * most)
-        size_[v] = std::max(std::min(2 * std::sqrt(d * (2 * r - d)), most), std::min(o_.edge_min_mm, most));
+      if (!fixed_[v])
+        size_[v] = std::clamp(chord(v, o_.deviation_mm), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
+  }
+
+  /// Length of an edge whose middle is `deviation` off a surface that bends as it does at v.
+  double chord(std::int32_t v, double deviation) const {
+    const double r = std::min(1 / std::max(bend_[v], 1e-12), 1e12), d = std::min(deviation, r);
+    return 2 * std::sqrt(d * (2 * r - d));
   }
 
   void thickness() {
@@ -129,39 +136,74 @@ class Sizing {
         ++count;
       }
     if (count == 0) return;
-    const std::vector<double> thin =
-        wall_thickness(mesh_, o_.edges_across * mean / static_cast<double>(count), o_.threads);
+    const double reach = mean / static_cast<double>(count);
+    const std::vector<double> thin = wall_thickness(mesh_, reach, o_.threads);
     const std::vector<double> shell = shell_sizes(mesh_);
     for_range(size_.size(), o_.threads, [&](std::int32_t v) {
-      size_[v] = std::clamp(thin[v] / o_.edges_across, std::min(o_.edge_min_mm, size_[v]), size_[v]);
+      const double least = std::min(o_.edge_min_mm, size_[v]);
+      if (thin[v] < reach) size_[v] = std::clamp(kAcross * thin[v], least, size_[v]);
       size_[v] = std::min(size_[v], 0.5 * shell[v]);
     });
+    keep_volumes(thin);
   }
 
-  /// H-correction [Borouchaki, Hecht, Frey 1998]: sizes grow along the surface by at most the gradation.
-  void grade() {
-    const double slope = std::log(o_.gradation);
-    using Entry = std::pair<double, std::int32_t>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-    for (std::int32_t v = 0; v < static_cast<std::int32_t>(size_.size()); ++v)
-      if (!mesh_.star[v].empty()) queue.push({size_[v], v});
-    while (!queue.empty()) {
-      const auto [s, v] = queue.top();
-      queue.pop();
-      if (s > size_[v]) continue;
-      for (std::int32_t t : mesh_.star[v])
-        for (std::int32_t w : mesh_.triangles[t].v) {
-          const double limit = s + slope * norm(mesh_.points[w] - mesh_.points[v]);
-          if (w == v || size_[w] <= limit) continue;
-          size_[w] = limit;
-          queue.push({limit, w});
-        }
+  /// Chords cut off what bulges. Where a label would lose more than its share of the volume so, edges on its thin parts
+  /// get shorter until the loss that the bend predicts fits.
+  void keep_volumes(const std::vector<double>& thin) {
+    std::map<Label, double> volume, loss;
+    const auto each_side = [&](auto body) {
+      for (const MeshTriangle& t : mesh_.triangles) {
+        if (t.patch < 0) continue;
+        const auto [below, above] = mesh_.labels_of(t.patch);
+        const double area = norm(mesh_.area_vector(t.v));
+        for (Label l : {below, above})
+          if (l != 0) body(l, t, area);
+      }
+    };
+    for (const MeshTriangle& t : mesh_.triangles) {
+      if (t.patch < 0) continue;
+      const auto [below, above] = mesh_.labels_of(t.patch);
+      const double v = dot(mesh_.points[t.v[0]], mesh_.area_vector(t.v)) / 3;
+      volume[below] += v;
+      volume[above] -= v;
     }
+    std::map<Label, double> part;  // of the thickness that a chord may cut off
+    for (const auto& [label, v] : volume)
+      if (label != 0) part[label] = 1;
+    for (int pass = 0; pass < 6; ++pass) {
+      loss.clear();
+      each_side([&](Label l, const MeshTriangle& t, double area) {
+        for (std::int32_t v : t.v) {
+          const double r = std::min(1 / std::max(bend_[v], 1e-12), 1e12), reach = std::min(thin[v], 2 * r);
+          const double size = std::min(size_[v], chord(v, part[l] * reach));
+          loss[l] += area / 3 * std::min(size * size / (8 * r), 0.5 * reach);
+        }
+      });
+      bool any = false;
+      for (auto& [label, p] : part)
+        if (loss[label] > kLossShare * volume[label]) {
+          p *= 0.6;
+          any = true;
+        }
+      if (!any) break;
+    }
+    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+      double least = 1;
+      for (std::int32_t t : mesh_.star[v]) {
+        const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
+        for (Label l : {below, above})
+          if (l != 0) least = std::min(least, part.at(l));
+      }
+      if (least < 1) {
+        const double r = std::min(1 / std::max(bend_[v], 1e-12), 1e12);
+        size_[v] = std::clamp(chord(v, least * std::min(thin[v], 2 * r)), std::min(o_.edge_min_mm, size_[v]), size_[v]);
+      }
+    });
   }
 
   const ComplexMesh& mesh_;
   const SizingOptions& o_;
-  std::vector<double> size_;
+  std::vector<double> size_, bend_;
   std::vector<char> fixed_;
 };
 
@@ -244,6 +286,36 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
   }
   if (shells) *shells = count;
   return out;
+}
+
+void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>& size) {
+  const double slope = std::log(gradation);
+  using Entry = std::pair<double, std::int32_t>;
+  std::vector<Entry> heap;
+  const auto spread = [&](std::int32_t v, auto found) {
+    for (std::int32_t t : mesh.star[v])
+      for (std::int32_t w : mesh.triangles[t].v) {
+        if (w == v || size[w] <= size[v]) continue;
+        const double limit = size[v] + slope * norm(mesh.points[w] - mesh.points[v]);
+        if (size[w] > limit && !found(w, limit)) return;
+      }
+  };
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(size.size()); ++v)
+    spread(v, [&](std::int32_t, double) {
+      heap.push_back({size[v], v});
+      return false;
+    });
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue({}, std::move(heap));
+  while (!queue.empty()) {
+    const auto [s, v] = queue.top();
+    queue.pop();
+    if (s > size[v]) continue;
+    spread(v, [&](std::int32_t w, double limit) {
+      size[w] = limit;
+      queue.push({limit, w});
+      return true;
+    });
+  }
 }
 
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options) {

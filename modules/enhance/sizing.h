@@ -14,7 +14,6 @@ struct SizingOptions {
   double edge_min_mm = 1, edge_max_mm = 10;
   std::map<Label, double> label_max_mm;  ///< by curvature: largest length on a label, instead of edge_max_mm
   double gradation = 1.3;                ///< lengths of neighbouring edges differ by at most this factor
-  double edges_across = 2;               ///< edges that should fit across a wall, as far as edge_min allows
   int threads = 0;
 };
 
@@ -24,6 +23,9 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
 
 /// For every vertex the cube root of the volume of the smallest closed shell of a label that it is on, mm.
 std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells = nullptr);
+
+/// H-correction [Borouchaki, Hecht, Frey 1998]: sizes grow along the surface by at most the gradation.
+void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>& size);
 
 /// Edge length asked for at every vertex, mm.
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options);

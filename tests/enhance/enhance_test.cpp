@@ -192,6 +192,21 @@ TEST(EnhanceComplex, CurvatureDecidesTheSizeWhenNoneIsAskedFor) {
   EXPECT_NEAR(large / small, 2, 0.6);  // the length goes with the root of the radius
 }
 
+TEST(EnhanceComplex, ATargetOfTetrahedraMakesEdgesLongerAndSaysSo) {
+  EnhanceOptions o;
+  o.edge_max_mm = 1.0;
+  const InterfaceComplex c = ball(10, 4);
+  const EnhanceResult fine = enhance(c, o);
+  EXPECT_NEAR(static_cast<double>(fine.expected_triangles) / static_cast<double>(fine.complex.triangles.size()), 1, 0.25);
+  EXPECT_EQ(fine.coarsened, 1);
+  o.target_tets = fine.expected_tets / 4;
+  const EnhanceResult coarse = enhance(c, o);
+  EXPECT_EQ(broken(c, coarse), "");
+  EXPECT_NEAR(coarse.coarsened, 2, 0.1);
+  EXPECT_LT(coarse.complex.triangles.size(), 0.33 * static_cast<double>(fine.complex.triangles.size()));
+  EXPECT_FALSE(coarse.warnings.empty());
+}
+
 TEST(EnhanceComplex, LabelsGetTheirOwnEdgeLength) {
   InterfaceComplex c = ball(6, 4), other = ball(6, 4);
   const auto first = static_cast<std::int32_t>(c.points.size());
