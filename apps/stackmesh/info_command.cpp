@@ -9,6 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json colour_of(const LabelInfo& label) { return label.colour ? Json(*label.colour) : Json(nullptr); }
+
 Json describe(const Input& input) {
   Json j = {{"path", input.path}, {"kind", input.kind}};
   Json labels = Json::array();
@@ -24,7 +26,7 @@ Json describe(const Input& input) {
     j["axis"] = std::string(1, "xyz"[stacking_axis(v, StackAxis::automatic)]);
     const std::vector<std::size_t> counts = count_voxels(v);
     for (std::size_t k = 1; k < v.labels.size(); ++k)
-      labels.push_back({{"label", v.labels[k].number}, {"name", v.labels[k].name}, {"voxels", counts[k]},
+      labels.push_back({{"label", v.labels[k].number}, {"name", v.labels[k].name}, {"colour", colour_of(v.labels[k])}, {"voxels", counts[k]},
                         {"volume_mm3", static_cast<double>(counts[k]) * v.voxel_volume_mm3()}});
   } else {
     const Stack& s = *input.sections;
@@ -39,7 +41,7 @@ Json describe(const Input& input) {
         sections += a > 0 ? 1 : 0;
         area = std::max(area, a);
       }
-      labels.push_back({{"label", s.labels[k].number}, {"name", s.labels[k].name}, {"sections", sections}, {"largest_area_mm2", area}});
+      labels.push_back({{"label", s.labels[k].number}, {"name", s.labels[k].name}, {"colour", colour_of(s.labels[k])}, {"sections", sections}, {"largest_area_mm2", area}});
     }
   }
   j["labels"] = labels;

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <new>
 
 #include "base/error.h"
 #include "commands.h"
+#include "slicer_module.h"
 #include "volume/tetgen_worker.h"
 
 namespace {
@@ -31,14 +33,22 @@ int run(int argc, char** argv) {
   program.name("stackmesh");
   program.set_version_flag("--version", "stackmesh " STACKMESH_VERSION);
   program.require_subcommand(1);
+  program.add_flag("--xml", "the description of mesh as a module of 3D Slicer");
   program.footer("stackmesh COMMAND --help tells a command's options.\nLicence: AGPL-3.0-or-later.");
   stackmesh::app::add_mesh_command(program);
   stackmesh::app::add_surface_command(program);
   stackmesh::app::add_contours_command(program);
   stackmesh::app::add_info_command(program);
-  check_command(argc, argv, program);
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments == std::vector<std::string>{"--xml"}) {
+    std::fputs(stackmesh::app::slicer_description().c_str(), stdout);
+    return 0;
+  }
+  if (stackmesh::app::is_slicer_call(argc, argv)) arguments = stackmesh::app::translate_slicer_call(argc, argv);
+  else check_command(argc, argv, program);
   try {
-    program.parse(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes a vector
+    program.parse(arguments);
   } catch (const CLI::Success& e) {  // --help, --version
     return program.exit(e);
   } catch (const CLI::ParseError& e) {

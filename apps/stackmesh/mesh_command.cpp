@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "commands.h"
 #include "options.h"
+#include "slicer_module.h"
 #include "pipeline/mesh_run.h"
 
 namespace stackmesh::app {
@@ -29,6 +30,7 @@ struct MeshArguments {
   double max_volume = 0, radius_edge = 0, dihedral = 0;
   int order = 1;
   bool strict = false, per_label = false, msh2 = false;
+  std::string return_parameters;  // of 3D Slicer
 };
 
 void add_options(CLI::App& command, MeshArguments& a, Target target) {
@@ -64,6 +66,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
   if (target == Target::surface)
     for (CLI::Option* option : of_volumes) option->group("");  // accepted without effect, so that both commands take the same line
+  command.add_option("--return-parameters", a.return_parameters)->group("");
   a.terminal.add_to(command);
 }
 
@@ -150,8 +153,11 @@ void add(CLI::App& program, const char* name, const char* description, Target ta
     const MeshRunOptions options = to_options(*command, *a, target);
     const auto progress = a->terminal.make_progress();
     const RunReport report = run_mesh(options, *progress);
+    if (!a->return_parameters.empty())
+      write_return_parameters(a->return_parameters, {{"closure", report.closure}, {"tetrahedra", std::to_string(report.volume ? report.volume->tets : 0)}});
     if (a->terminal.quiet) return;
     print_warnings(report.warnings);
+    if (a->terminal.for_slicer()) return;
     print_summary(report, a->outputs);
   });
 }

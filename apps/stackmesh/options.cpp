@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "slicer_module.h"
 
 namespace stackmesh::app {
 namespace {
@@ -37,8 +38,9 @@ Caps caps_named(const std::string& name) {
 }  // namespace
 
 void InputArguments::add_to(CLI::App& command, bool selection) {
-  command.add_option("INPUT", paths, "label volume, folder or quoted glob of slices or masks, .cnt file(s) or LABEL=FILE.cnt")->required();
+  command.add_option("INPUT", paths, "label volume, DICOM (RTSTRUCT, SEG, series), folder or quoted glob of slices or masks, .cnt file(s) or LABEL=FILE.cnt")->required();
   command.add_option("--spacing", spacing, "X,Y,Z mm of a PNG/TIFF stack");
+  command.add_option("--series", series, "DICOM: series instance UID where a folder holds several");
   if (!selection) return;
   command.add_option("--label", labels, "labels to use by number or name: 1,4,7-9,femur_left (default: all)");
   command.add_flag("--merge", merge, "selected labels become one, numbered as the smallest");
@@ -48,6 +50,7 @@ InputOptions InputArguments::options() const {
   InputOptions o;
   o.paths = paths;
   o.labels = labels;
+  o.series = series;
   o.merge = merge;
   if (!spacing.empty()) {
     const std::vector<std::string> parts = split(spacing, ',');
@@ -82,12 +85,14 @@ ContourOptions ContourArguments::options() const {
 }
 
 void TerminalArguments::add_to(CLI::App& command) {
-  command.add_option("--progress", progress, "auto, plain or none; on stderr")->check(CLI::IsMember({"auto", "plain", "none"}))->capture_default_str();
+  command.add_option("--progress", progress, "auto, plain or none, on stderr; slicer, as 3D Slicer reads it on stdout")
+      ->check(CLI::IsMember({"auto", "plain", "none", "slicer"}))->capture_default_str();
   command.add_flag("--quiet", quiet, "only errors");
   command.add_flag("--verbose", verbose, "a line per stage, as --progress plain");
 }
 
 std::unique_ptr<Progress> TerminalArguments::make_progress() const {
+  if (for_slicer()) return make_slicer_progress();
   return make_terminal_progress(quiet || progress == "none" ? ProgressMode::none
                                 : verbose || progress == "plain" ? ProgressMode::plain
                                                                  : ProgressMode::automatic);

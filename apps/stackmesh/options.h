@@ -16,7 +16,7 @@ namespace stackmesh::app {
 /// INPUT, --spacing, --label, --merge: what every command that reads labels takes.
 struct InputArguments {
   std::vector<std::string> paths;
-  std::string spacing, labels;
+  std::string spacing, labels, series;
   bool merge = false;
   void add_to(CLI::App& command, bool selection);
   InputOptions options() const;  ///< @throws Error(usage)
@@ -35,6 +35,7 @@ struct ContourArguments {
 struct TerminalArguments {
   std::string progress = "auto";
   bool quiet = false, verbose = false;
+  bool for_slicer() const { return progress == "slicer"; }
   void add_to(CLI::App& command);
   std::unique_ptr<Progress> make_progress() const;
 };

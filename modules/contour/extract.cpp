@@ -97,8 +97,8 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
     stack.sections[k].interpolated = k % period != 0;
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;
-    if (k == 0) stack.touches_low = labels_in(slice, volume);
-    if (k == count - 1) stack.touches_high = labels_in(slice, volume);
+    if (k == 0 && !volume.goes_on_low[axes.w]) stack.touches_low = labels_in(slice, volume);
+    if (k == count - 1 && !volume.goes_on_high[axes.w]) stack.touches_high = labels_in(slice, volume);
     progress.advance(static_cast<double>(++done) / count);
   };
   parallel_for((count + step - 1) / step, options.threads, [&](std::size_t block) {

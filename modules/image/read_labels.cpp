@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "image/dicom_file.h"
+#include "image/dicom_segmentation.h"
+#include "image/dicom_series.h"
 #include "image/file_names.h"
 #include "image/masks.h"
 #include "image/slices.h"
@@ -60,7 +62,7 @@ LabelVolume read_files(const std::vector<std::string>& files, const std::string&
   }
   if (slices.empty() && masks.empty())
     fail_input("no PNG/TIFF slices and no mask volumes", path,
-               "give a folder of .png/.tif label slices, or of one .nii.gz/.nrrd/.mha mask per structure");
+               "give a folder of .png/.tif label slices, of one .nii.gz/.nrrd/.mha mask per structure, or of DICOM files");
   if (!slices.empty() && !masks.empty())
     fail_input("both slices and mask volumes are there",
                file_name_of(slices[0]) + " and " + file_name_of(masks[0]) + " in " + path,
@@ -82,21 +84,37 @@ LabelVolume read_files(const std::vector<std::string>& files, const std::string&
   return read_masks(masks);
 }
 
+/// The labels of a DICOM file or folder.
+LabelVolume read_dicom(const DicomContent& content, const std::string& path, const ReadOptions& options) {
+  if (options.spacing_mm)
+    fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: DICOM carries its own voxel size");
+  const std::string object = label_object(content, path);
+  if (!content.structure_sets.empty()) fail_input("this is a structure set, which has contours and no voxels", object, "give it to mesh, surface or contours");
+  if (!object.empty()) return read_segmentation(object, options.labels);
+  if (!content.images.empty()) return read_series_labels(path, options.series);
+  refuse_dicom(content.others[0]);
+}
+
 LabelVolume read_any(const std::string& path, const ReadOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) return read_files(list_folder(path), path, options);
+  if (fs::is_directory(status)) {
+    const std::vector<std::string> files = list_folder(path);
+    const bool known = std::any_of(files.begin(), files.end(), [](const std::string& f) { return format_of(f) != FileFormat::unknown; });
+    const DicomContent dicom = known ? DicomContent() : dicom_content(path);
+    return dicom.any() ? read_dicom(dicom, path, options) : read_files(files, path, options);
+  }
   if (!fs::exists(status)) {
     if (path.find_first_of("*?[") != std::string::npos) return read_files(expand_glob(path), path, options);
     fail_input("the input does not exist", path.empty() ? "''" : path, "check the path");
   }
   const FileFormat format = format_of(path);
-  if (format == FileFormat::unknown && dicom_kind(path) != DicomKind::none) refuse_dicom(path);
+  if (format == FileFormat::unknown && dicom_kind(path) != DicomKind::none) return read_dicom(dicom_content(path), path, options);
   if (format == FileFormat::unknown) fail_input("the ending is of no known format", path, inputs);
   if (is_slice(format)) return read_slices({path}, options.spacing_mm);
   if (options.spacing_mm)
     fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: the file carries its own voxel size");
-  return read_volume_file(path, format);
+  return read_volume_file(path, format, options.labels);
 }
 
 }  // namespace

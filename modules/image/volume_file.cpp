@@ -19,6 +19,7 @@
 #include "base/parallel.h"
 #include "image/deflate_check.h"
 #include "image/palette.h"
+#include "image/segments.h"
 #include "image/quiet.h"
 #include "image/volume_header.h"
 
@@ -142,7 +143,7 @@ void settle_nifti(const HeaderFacts& facts, LabelVolume& volume, const std::stri
   }
 }
 
-void take_grid(const itk::ImageIOBase& io, LabelVolume& volume, const std::string& path) {
+void take_grid(const itk::ImageIOBase& io, LabelVolume& volume, int layers, const std::string& path) {
   const unsigned dims = io.GetNumberOfDimensions();
   if (dims < 2) fail_input("the image has one dimension only", path, "give a three-dimensional label volume");
   double origin[3] = {0, 0, 0};
@@ -164,7 +165,7 @@ void take_grid(const itk::ImageIOBase& io, LabelVolume& volume, const std::strin
     const std::vector<double> direction = io.GetDirection(d);
     for (unsigned c = 0; c < 3; ++c) axis[d][c] = c < direction.size() ? direction[c] : 0;
   }
-  if (io.GetNumberOfComponents() != 1)
+  if (io.GetNumberOfComponents() != static_cast<unsigned>(layers))
     fail_input("the image has several values a voxel (colour or vectors)", path, "give one label volume");
   require_spacing(volume.spacing_mm.data(), 3, path);
   volume.origin_mm = {origin[0], origin[1], origin[2]};
@@ -272,6 +273,45 @@ void read_voxels(itk::ImageIOBase& io, const std::string& path, const HeaderFact
   palette.finish(volume);
 }
 
+/// Reads the voxels of a segmentation whose segments may overlap: a value for every layer.
+template <class T>
+void read_layers_as(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts, const std::string& labels, LabelVolume& volume) {
+  if (io.GetComponentSize() != sizeof(T)) fail_internal("unexpected voxel size", "image module");
+  const auto layers = static_cast<std::size_t>(facts.layers), pixels = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
+  const std::unique_ptr<T[]> raw(new T[pixels * volume.size[2] * layers]);
+  read_raw(io, path, facts, raw.get());
+  std::vector<LabelInfo> segments;
+  for (const SlicerSegment& s : facts.segmentation.segments) segments.push_back(s.label);
+  join_segments(
+      segments,
+      [&](int k) {
+        std::vector<std::vector<std::uint16_t>> out(layers, std::vector<std::uint16_t>(pixels, 0));
+        for (std::size_t l = 0; l < layers; ++l)
+          for (std::size_t i = 0; i < pixels; ++i) {
+            const T value = raw[(pixels * k + i) * layers + l];
+            if (value == 0) continue;
+            for (std::size_t s = 0; s < segments.size() && out[l][i] == 0; ++s) {
+              const SlicerSegment& segment = facts.segmentation.segments[s];
+              if (segment.layer == static_cast<int>(l) && static_cast<T>(segment.value) == value) out[l][i] = static_cast<std::uint16_t>(s + 1);
+            }
+          }
+        return out;
+      },
+      labels, path, volume);
+}
+
+void read_layers(itk::ImageIOBase& io, const std::string& path, const HeaderFacts& facts, const std::string& labels, LabelVolume& volume) {
+  switch (io.GetComponentType()) {
+    case Type::UCHAR: return read_layers_as<unsigned char>(io, path, facts, labels, volume);
+    case Type::CHAR: return read_layers_as<signed char>(io, path, facts, labels, volume);
+    case Type::USHORT: return read_layers_as<unsigned short>(io, path, facts, labels, volume);
+    case Type::SHORT: return read_layers_as<short>(io, path, facts, labels, volume);
+    case Type::UINT: return read_layers_as<unsigned int>(io, path, facts, labels, volume);
+    case Type::INT: return read_layers_as<int>(io, path, facts, labels, volume);
+    default: fail_input("the voxel type of the segmentation's layers is not read", path, "store them as whole numbers of 8 to 32 bits");
+  }
+}
+
 /// Opens the file, takes its grid, and lets `voxels` read on.
 template <class Voxels>
 void read_file(const std::string& path, FileFormat format, const HeaderFacts& facts, LabelVolume& grid, const char* smaller,
@@ -285,7 +325,7 @@ void read_file(const std::string& path, FileFormat format, const HeaderFacts& fa
     if (format == FileFormat::nifti) alone = std::make_unique<const AloneNifti>(path);
     io->SetFileName(alone ? alone->path() : path);
     io->ReadImageInformation();
-    take_grid(*io, grid, path);
+    take_grid(*io, grid, facts.layers, path);
     if (format == FileFormat::nifti) settle_nifti(facts, grid, path);
     voxels(*io);
   } catch (const Error&) {
@@ -332,22 +372,31 @@ void read_intensities(itk::ImageIOBase& io, const std::string& path, const Heade
 
 }  // namespace
 
-LabelVolume read_volume_file(const std::string& path, FileFormat format) {
+LabelVolume read_volume_file(const std::string& path, FileFormat format, const std::string& labels) {
   const HeaderFacts facts = check_volume_header(path, format);
   LabelVolume volume;
   volume.kind = kind_of(format);
   volume.warnings = facts.warnings;
   read_file(path, format, facts, volume, "crop it, or store it as 8- or 16-bit whole numbers",
-            [&](itk::ImageIOBase& io) { read_voxels(io, path, facts, volume); });
-  for (LabelInfo& label : volume.labels) {
-    const auto name = facts.names.find(label.number);
-    if (name != facts.names.end()) label.name = name->second;
-  }
+            [&](itk::ImageIOBase& io) {
+              if (facts.layers > 1) read_layers(io, path, facts, labels, volume);
+              else read_voxels(io, path, facts, volume);
+            });
+  const SlicerSegmentation& segmentation = facts.segmentation;
+  if (segmentation.segments.empty()) return volume;
+  volume.kind = "seg.nrrd";
+  volume.goes_on_low = segmentation.goes_on_low;
+  volume.goes_on_high = segmentation.goes_on_high;
+  if (facts.layers == 1)
+    for (LabelInfo& label : volume.labels)
+      for (const SlicerSegment& s : segmentation.segments)
+        if (s.label.number == label.number && label.number != 0) label = s.label;
   return volume;
 }
 
 IntensityVolume read_intensity_file(const std::string& path, FileFormat format) {
   const HeaderFacts facts = check_volume_header(path, format);
+  if (facts.layers > 1) fail_input("the image has more than three dimensions or several values a voxel", path, "give an image, not a segmentation");
   LabelVolume grid;
   grid.warnings = facts.warnings;
   IntensityVolume image;

@@ -7,8 +7,9 @@
 
 namespace stackmesh {
 
-/// Reads one volume file through ITK; it may hold nothing but background. @throws Error(input)
-LabelVolume read_volume_file(const std::string& path, FileFormat format);
+/// Reads one volume file through ITK; it may hold nothing but background. `labels` is the order of priority where the file
+/// holds segments that overlap; those that it does not name are then left out. @throws Error(input)
+LabelVolume read_volume_file(const std::string& path, FileFormat format, const std::string& labels = "");
 
 /// Reads the intensities of one volume file through ITK. @throws Error(input)
 IntensityVolume read_intensity_file(const std::string& path, FileFormat format);

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "image/text_header.h"
 
 namespace stackmesh {
 namespace {
@@ -224,32 +225,6 @@ HeaderFacts check_gipl(const std::string& path) {
 
 // ---- the text headers: NRRD and MetaImage ----
 
-std::string trim(const std::string& text) {
-  const std::size_t a = text.find_first_not_of(" \t\r\n"), b = text.find_last_not_of(" \t\r\n");
-  return a == std::string::npos ? "" : text.substr(a, b - a + 1);
-}
-
-std::vector<std::string> words(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> list;
-  for (std::string w; stream >> w;) list.push_back(w);
-  return list;
-}
-
-double to_number(const std::string& text, const std::string& field, const std::string& path) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0')
-    damaged("the header is damaged: '" + text + "' in field '" + field + "'", path);
-  return value;
-}
-
-std::vector<double> numbers(const std::string& text, const std::string& field, const std::string& path) {
-  std::vector<double> list;
-  for (const std::string& w : words(text)) list.push_back(to_number(w, field, path));
-  return list;
-}
-
 std::uint64_t voxel_count(const std::vector<double>& sizes, std::size_t dims, const std::string& path) {
   if (sizes.size() != dims || dims == 0)
     damaged("the header is damaged: " + std::to_string(sizes.size()) + " sizes for " + std::to_string(dims) +
@@ -269,44 +244,6 @@ std::string beside(const std::string& path, const std::string& file) {
   if (!file.empty() && file[0] == '/') return file;
   const std::size_t slash = path.find_last_of('/');
   return slash == std::string::npos ? file : path.substr(0, slash + 1) + file;
-}
-
-/// Fields by lower-case name, keys ("name:=value") with their own case and a leading '='; where the header
-/// ends.
-struct TextHeader {
-  std::map<std::string, std::string> fields;
-  std::uint64_t end = 0;
-  bool ended = false;
-  std::string get(const std::string& name) const {
-    const auto found = fields.find(name);
-    return found == fields.end() ? "" : found->second;
-  }
-};
-
-constexpr std::size_t max_header = 1 << 22;
-
-TextHeader read_nrrd_header(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  if (!file || !std::getline(file, line)) damaged("the file is empty or cannot be read", path);
-  if (line.compare(0, 7, "NRRD000") != 0) damaged("this is no NRRD file, or its header is damaged", path);
-  TextHeader header;
-  while (static_cast<std::size_t>(file.tellg()) < max_header && std::getline(file, line)) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) {
-      header.ended = true;
-      header.end = static_cast<std::uint64_t>(file.tellg());
-      break;
-    }
-    if (line[0] == '#') continue;
-    const std::size_t colon = line.find(':');
-    if (colon == std::string::npos) continue;
-    if (line.compare(colon, 2, ":=") == 0)
-      header.fields["=" + line.substr(0, colon)] = trim(line.substr(colon + 2));
-    else
-      header.fields[lower_case(trim(line.substr(0, colon)))] = trim(line.substr(colon + 1));
-  }
-  return header;
 }
 
 int nrrd_bytes(const std::string& type) {
@@ -399,6 +336,23 @@ void check_nrrd_grid(const TextHeader& header, HeaderFacts& facts, const std::st
   }
 }
 
+/// 3D Slicer's segmentations: their names, and their layers where segments overlap (an axis of kind "list").
+void find_segments(const TextHeader& header, const std::vector<double>& sizes, HeaderFacts& facts, const std::string& path) {
+  if (header.get("=Segment0_ID").empty() && header.get("=Segment0_Name").empty() && header.get("=Segment0_LabelValue").empty()) return;
+  const std::vector<std::string> kinds = words(lower_case(header.get("kinds")));
+  std::vector<double> space;
+  double layers = 1;
+  for (std::size_t d = 0; d < sizes.size(); ++d) {
+    const bool domain = kinds.size() != sizes.size() || kinds[d] == "domain" || kinds[d] == "space";
+    if (domain) space.push_back(sizes[d]);
+    else layers *= sizes[d];
+  }
+  if (space.size() != 3 || layers > 1000) return;
+  facts.layers = static_cast<int>(layers);
+  facts.segmentation = read_slicer_segments(header, {space[0], space[1], space[2]}, facts.layers, path);
+  facts.warnings.insert(facts.warnings.end(), facts.segmentation.warnings.begin(), facts.segmentation.warnings.end());
+}
+
 HeaderFacts check_nrrd(const std::string& path) {
   const TextHeader header = read_nrrd_header(path);
   HeaderFacts facts;
@@ -411,19 +365,11 @@ HeaderFacts check_nrrd(const std::string& path) {
   const int bytes = nrrd_bytes(type);
   if (bytes == 0)
     fail_input("voxels of NRRD type '" + type + "' are no labels", path, "store the labels as whole numbers");
-  if (std::count_if(sizes.begin(), sizes.end(), [](double n) { return n > 1; }) > 3)
+  find_segments(header, sizes, facts, path);
+  if (facts.layers == 1 && std::count_if(sizes.begin(), sizes.end(), [](double n) { return n > 1; }) > 3)
     fail_input("the image has more than three dimensions or several values a voxel (overlapping segments)",
                path, "give one three-dimensional label volume; in 3D Slicer, export it as a labelmap");
   check_nrrd_grid(header, facts, path);
-
-  for (const auto& [key, value] : header.fields) {  // 3D Slicer: Segment3_LabelValue:=4, Segment3_Name:=liver
-    const std::size_t at = key.find("_LabelValue");
-    if (key.compare(0, 8, "=Segment") != 0 || at == std::string::npos) continue;
-    const double number = to_number(value, key.substr(1), path);
-    const std::string name = header.get(key.substr(0, at) + "_Name");
-    if (number >= 1 && number < 2147483648.0 && !name.empty())
-      facts.names.emplace(static_cast<Label>(number), name);
-  }
 
   const std::string encoding = lower_case(header.get("encoding"));
   std::string detached = header.get("data file");
@@ -447,7 +393,7 @@ HeaderFacts check_metaimage(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail_input("cannot open the file", path, "check that you may read it");
   TextHeader header;
-  for (std::string line; static_cast<std::size_t>(file.tellg()) < max_header && std::getline(file, line);) {
+  for (std::string line; static_cast<std::size_t>(file.tellg()) < kMaxHeader && std::getline(file, line);) {
     const std::size_t equal = line.find('=');
     if (equal == std::string::npos) {
       if (trim(line).empty()) continue;

@@ -1,10 +1,10 @@
 #pragma once
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "image/file_names.h"
+#include "image/slicer_segments.h"
 #include "model/geometry.h"
 
 namespace stackmesh {
@@ -12,7 +12,8 @@ namespace stackmesh {
 /// What the raw header of a volume file says that ITK would mend in silence or not tell.
 struct HeaderFacts {
   std::vector<std::string> warnings;
-  std::map<Label, std::string> names;  ///< label names that the file holds (segmentation NRRD)
+  SlicerSegmentation segmentation;     ///< NRRD: the segments of 3D Slicer, where it names any
+  int layers = 1;                      ///< values a voxel, of segments that overlap
   double unit_mm = 1;                  ///< NIfTI: what the file's unit of length is, where it says so
   bool has_forms = true;               ///< NIfTI: false when it carries no orientation at all
   std::vector<Vec3>

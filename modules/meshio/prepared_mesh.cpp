@@ -57,13 +57,19 @@ class LabelNames {
       for (char& c : name)
         if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '|') c = '_';
       by_label_[label] = names_.add(name);
+      if (label == 0) continue;
+      infos_.push_back({label, by_label_[label]});
+      for (const LabelInfo& info : infos)
+        if (info.number == label) infos_.back().colour = info.colour;
     }
   }
+  const std::vector<LabelInfo>& infos() const { return infos_; }
   const std::string& operator[](Label label) const { return by_label_.at(label); }
 
  private:
   UniqueNames names_;
   std::map<Label, std::string> by_label_;
+  std::vector<LabelInfo> infos_;
 };
 
 /// Turns a triangle so that its normal points out of `below`.
@@ -78,6 +84,7 @@ bool wants_flip(const InterfaceTriangle& t) {
 }
 
 void group_triangles(std::vector<InterfaceTriangle> triangles, const LabelNames& names, PreparedMesh& mesh) {
+  mesh.named = names.infos();
   const Grouping<Pair> groups(triangles.size(),
                               [&](std::size_t i) { return Pair(triangles[i].below, triangles[i].above); });
   mesh.triangles.reserve(triangles.size());

@@ -34,6 +34,7 @@ struct PreparedMesh {
   std::vector<std::array<std::int32_t, 3>> triangle_mids;  ///< second order: of the triangles, each behind its corner
   std::vector<PairGroup> pairs;    ///< ascending (below, above)
   std::vector<LabelGroup> labels;  ///< ascending; empty for a surface
+  std::vector<LabelInfo> named;    ///< every label of the mesh but the background, with its unique name and its colour
   std::string space;               ///< "LPS", "RAS" or ""
   SolverSets sets;                 ///< of a solver model; for a deck of a mere mesh by add_interface_sets()
 

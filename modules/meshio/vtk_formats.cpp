@@ -40,15 +40,25 @@ class XmlFile {
     offset_ += sizeof(std::uint64_t) + blocks_.back().size;
   }
 
-  /// Field data that says the frame: a string, as 3D Slicer reads and writes it, or else its character codes.
-  void space(const std::string& space, bool as_string) {
-    if (space.empty()) return;
-    text_ += "<!-- SPACE=" + space + ", mm -->\n<FieldData>\n";
-    text_ += as_string ? "<Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">\n"
-                       : "<DataArray type=\"UInt8\" Name=\"SPACE\" NumberOfTuples=\"" +
-                             std::to_string(space.size()) + "\" format=\"ascii\">\n";
-    for (const char c : space) text_ += std::to_string(static_cast<int>(c)) + " ";
-    text_ += as_string ? "0\n</Array>\n</FieldData>\n" : "\n</DataArray>\n</FieldData>\n";
+  /// Field data that say the frame: a string, as 3D Slicer reads and writes it, or else its character codes.
+  /// And the labels: number, name and colour of each (white where it has none); names of a file without strings are their
+  /// UTF-8 codes, a line each.
+  void field_data(const PreparedMesh& mesh, bool as_string) {
+    if (!mesh.space.empty()) text_ += "<!-- SPACE=" + mesh.space + ", mm -->\n";
+    text_ += "<FieldData>\n";
+    if (!mesh.space.empty()) texts("SPACE", {mesh.space}, as_string);
+    std::string numbers, colours;
+    std::vector<std::string> names;
+    for (const LabelInfo& l : mesh.named) {
+      numbers += std::to_string(l.number) + " ";
+      names.push_back(l.name);
+      for (const int c : l.colour.value_or(std::array<std::uint8_t, 3>{255, 255, 255})) colours += std::to_string(c) + " ";
+    }
+    const std::string count = std::to_string(names.size());
+    text_ += "<DataArray type=\"Int32\" Name=\"label_number\" NumberOfTuples=\"" + count + "\" format=\"ascii\">\n" + numbers + "\n</DataArray>\n";
+    texts("label_name", names, as_string);
+    text_ += "<DataArray type=\"UInt8\" Name=\"label_colour\" NumberOfComponents=\"3\" NumberOfTuples=\"" + count + "\" format=\"ascii\">\n" +
+             colours + "\n</DataArray>\n</FieldData>\n";
   }
 
   void finish(std::FILE* file) {
@@ -67,6 +77,21 @@ class XmlFile {
     std::size_t size;
   };
   std::string type_, text_;
+  void texts(const std::string& name, const std::vector<std::string>& values, bool as_string) {
+    std::size_t codes = 0;
+    std::string text;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      for (const char c : values[i] + (as_string || i + 1 == values.size() ? "" : "\n")) {
+        text += std::to_string(static_cast<int>(static_cast<unsigned char>(c))) + " ";
+        ++codes;
+      }
+      if (as_string) text += "0 ";
+    }
+    const std::string kind = as_string ? "Array" : "DataArray";
+    text_ += "<" + kind + (as_string ? " type=\"String\"" : " type=\"UInt8\"") + " Name=\"" + name + "\" NumberOfTuples=\"" +
+             std::to_string(as_string ? values.size() : codes) + "\" format=\"ascii\">\n" + text + "\n</" + kind + ">\n";
+  }
+
   std::vector<Block> blocks_;
   std::uint64_t offset_ = 0;
 };
@@ -155,7 +180,7 @@ void write_vtp(std::FILE* file, const PreparedMesh& mesh) {
   const CellLabels cells(mesh);
   const Connectivity polygons(mesh);
   XmlFile xml("PolyData");
-  xml.space(mesh.space, true);
+  xml.field_data(mesh, true);
   xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) +
              "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
              std::to_string(mesh.triangles.size()) + "\">\n<CellData>\n";
@@ -177,7 +202,7 @@ void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
   std::vector<std::uint8_t> types(mesh.tets.size(), static_cast<std::uint8_t>(cell_type(mesh, true)));
   types.resize(types.size() + mesh.triangles.size(), static_cast<std::uint8_t>(cell_type(mesh, false)));
   XmlFile xml("UnstructuredGrid");
-  xml.space(mesh.space, false);  // meshio refuses a file that holds a string
+  xml.field_data(mesh, false);  // meshio refuses a file that holds a string
   xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
              std::to_string(types.size()) + "\">\n<CellData Scalars=\"label\">\n";
   xml.array("label", cells.label, "Int32");

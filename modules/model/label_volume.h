@@ -24,9 +24,11 @@ struct LabelVolume {
   Vec3 origin_mm;                                   ///< centre of voxel (0, 0, 0), LPS
   std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< orthonormal, LPS
   bool anatomical = true;                           ///< false: no anatomy is known (PNG stacks); coordinates as they are
+  std::array<bool, 3> goes_on_low = {false, false, false};   ///< the image goes on before the first voxel along an axis (a cropped
+  std::array<bool, 3> goes_on_high = {false, false, false};  ///< grid), or behind the last one: that is not its border
   std::vector<std::uint16_t> voxels;                ///< size[0] * size[1] * size[2]
   std::vector<LabelInfo> labels;                    ///< labels[0] is {0, ""}
-  std::string kind;                                 ///< "nifti", "nrrd", "metaimage", "gipl", "slices", "masks"
+  std::string kind;                                 ///< "nifti", "nrrd", "seg.nrrd", "metaimage", "gipl", "slices", "masks", "dicom", "dicomseg"
   std::vector<std::string> warnings;                ///< what reading found odd but could mend
 
   std::size_t index(int i, int j, int k) const {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "image/dicom_file.h"
+#include "image/dicom_series.h"
 #include "image/read_contours.h"
 #include "image/read_labels.h"
 #include "image/read_structure_set.h"
@@ -72,6 +72,8 @@ void read_volume(const InputOptions& options, Input& input) {
     fail_usage("more than one input", options.paths[1], "give one label volume, or several .cnt files");
   ReadOptions read;
   read.spacing_mm = options.spacing_mm;
+  read.labels = options.labels;
+  read.series = options.series;
   LabelVolume volume = read_label_volume(options.paths[0], read);
   input.kind = volume.kind;
   input.warnings = volume.warnings;
@@ -82,6 +84,13 @@ void read_volume(const InputOptions& options, Input& input) {
   input.volume = std::move(volume);
 }
 
+/// The structure set that one path is, or whose folder it is; "" where there is none.
+std::string structure_set_in(const std::vector<std::string>& paths) {
+  if (paths.size() != 1) return "";
+  const DicomContent content = dicom_content(paths[0]);
+  return content.structure_sets.empty() ? "" : label_object(content, paths[0]);
+}
+
 }  // namespace
 
 Input read_input(const InputOptions& options) {
@@ -89,7 +98,7 @@ Input read_input(const InputOptions& options) {
   if (options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
   for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
   if (is_contour_input(options.paths[0])) read_contours(options, input);
-  else if (options.paths.size() == 1 && dicom_kind(options.paths[0]) == DicomKind::structure_set) read_structures(options, options.paths[0], input);
+  else if (const std::string file = structure_set_in(options.paths); !file.empty()) read_structures(options, file, input);
   else read_volume(options, input);
   return input;
 }

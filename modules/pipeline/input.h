@@ -15,6 +15,7 @@ struct InputOptions {
   std::vector<std::string> paths;  ///< one volume, DICOM file, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
   std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
+  std::string series;                               ///< DICOM: series instance UID where a folder holds several
   bool merge = false;                               ///< selected labels become one
 };
 

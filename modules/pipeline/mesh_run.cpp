@@ -80,6 +80,7 @@ class MeshRun {
       LabelReport row;
       row.label = l.number;
       row.name = l.name;
+      row.colour = l.colour;
       report_.labels.push_back(row);
     }
     if (!input_.volume) return;

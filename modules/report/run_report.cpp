@@ -51,6 +51,7 @@ Json volume(const RunReport& r) {
 Json label(const LabelReport& l) {
   return {{"label", l.label},
           {"name", l.name},
+          {"colour", l.colour ? Json(*l.colour) : Json(nullptr)},
           {"closed", l.closed},
           {"components", l.components},
           {"input_components", optional(l.input_components)},

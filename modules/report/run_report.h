@@ -22,6 +22,7 @@ struct StageTime {
 struct LabelReport {
   Label label = 0;
   std::string name;
+  std::optional<std::array<std::uint8_t, 3>> colour;  ///< red, green, blue, where the input has one
   bool closed = false;
   int components = 0;
   std::optional<int> input_components;
