@@ -7,7 +7,7 @@ std::string join(const std::string& what, const std::string& where, const std::s
   if (!where.empty()) text += ", " + where;
   if (!mend.empty()) text += "; " + mend;
   for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';  // an error is one line
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';  // an error is one line, of text
   return text;
 }
 }  // namespace

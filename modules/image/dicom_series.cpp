@@ -1,8 +1,5 @@
 #include "image/dicom_series.h"
 
-#include <itkGDCMImageIO.h>
-#include <itkObject.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,9 +10,9 @@
 #include "image/dicom_dataset.h"
 #include "image/dicom_file.h"
 #include "image/dicom_grid.h"
+#include "image/dicom_pixels.h"
 #include "image/file_names.h"
 #include "image/palette.h"
-#include "image/quiet.h"
 
 namespace stackmesh {
 namespace {
@@ -84,63 +81,9 @@ class SeriesReader {
   }
 
   /// The rescaled values of one slice.
-  std::vector<double> read(std::size_t slice) const {
-    const std::string& file = slices_[slice].file;
-    std::vector<double> values;
-    try {
-      const Quiet quiet;
-      itk::Object::GlobalWarningDisplayOff();
-      const auto io = itk::GDCMImageIO::New();
-      io->SetFileName(file);
-      io->ReadImageInformation();
-      const std::size_t count = static_cast<std::size_t>(columns_) * rows_;
-      if (static_cast<std::size_t>(io->GetDimensions(0)) != static_cast<std::size_t>(columns_) ||
-          static_cast<std::size_t>(io->GetDimensions(1)) != static_cast<std::size_t>(rows_) || io->GetNumberOfComponents() != 1 ||
-          io->GetImageSizeInPixels() != static_cast<itk::ImageIOBase::SizeType>(count))
-        fail_input("a slice holds no single grey image of the size that its header gives", file, again);
-      std::vector<char> bytes(io->GetImageSizeInBytes());
-      itk::ImageIORegion region(io->GetNumberOfDimensions());
-      for (unsigned d = 0; d < io->GetNumberOfDimensions(); ++d) region.SetSize(d, io->GetDimensions(d));
-      io->SetIORegion(region);
-      io->Read(bytes.data());
-      values = to_doubles(*io, bytes, count);
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception&) {  // GDCM's texts hold source lines, and may hold values of the file
-      const auto header = load_dicom_header(file);
-      if (header != nullptr && DcmXfer(header->getDataset()->getOriginalXfer()).isEncapsulated())
-        fail_input("a slice is damaged, or its pixels are stored as " + transfer_syntax_of(*header) + ", which cannot be decoded", file,
-                   "convert it to an uncompressed transfer syntax, with gdcmconv --raw or dcmdjpeg");
-      fail_input("a slice is damaged or truncated", file, again);
-    }
-    for (double v : values)
-      if (!std::isfinite(v)) fail_input("a slice holds a value that is not finite", file, again);
-    return values;
-  }
+  std::vector<double> read(std::size_t slice) const { return read_dicom_pixels(slices_[slice].file, rows_, columns_); }
 
  private:
-  template <class T>
-  static std::vector<double> copy(const std::vector<char>& bytes, std::size_t count) {
-    if (bytes.size() < count * sizeof(T)) throw std::length_error("too few bytes");
-    const T* p = reinterpret_cast<const T*>(bytes.data());
-    return std::vector<double>(p, p + count);
-  }
-
-  static std::vector<double> to_doubles(const itk::GDCMImageIO& io, const std::vector<char>& bytes, std::size_t count) {
-    using Type = itk::IOComponentEnum;
-    switch (io.GetComponentType()) {
-      case Type::UCHAR: return copy<unsigned char>(bytes, count);
-      case Type::CHAR: return copy<signed char>(bytes, count);
-      case Type::USHORT: return copy<unsigned short>(bytes, count);
-      case Type::SHORT: return copy<short>(bytes, count);
-      case Type::UINT: return copy<unsigned int>(bytes, count);
-      case Type::INT: return copy<int>(bytes, count);
-      case Type::FLOAT: return copy<float>(bytes, count);
-      case Type::DOUBLE: return copy<double>(bytes, count);
-      default: throw std::invalid_argument("voxel type");
-    }
-  }
-
   void find_slices() {
     std::error_code ignored;
     const bool is_file = !fs::is_directory(path_, ignored);

@@ -15,7 +15,7 @@ endforeach()
 stackmesh_module(image
   SOURCES read_labels.cpp read_image.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp png_check.cpp
           masks.cpp palette.cpp file_names.cpp dicom_dataset.cpp dicom_grid.cpp
-          dicom_segmentation.cpp dicom_series.cpp read_structure_set.cpp segments.cpp slicer_segments.cpp text_header.cpp
+          dicom_segmentation.cpp dicom_series.cpp dicom_pixels.cpp read_structure_set.cpp segments.cpp slicer_segments.cpp text_header.cpp
   HEADERS read_labels.h read_image.h read_contours.h read_structure_set.h dicom_file.h dicom_series.h
   USES base model
   PRIVATE ${ITK_LIBRARIES} opencv_core opencv_imgcodecs ZLIB::ZLIB DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)

@@ -101,6 +101,8 @@ InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int axis,
   out.origin_mm = volume.origin_mm;
   out.axes = volume.axes;
   out.anatomical = volume.anatomical;
+  out.goes_on_low = volume.goes_on_low;
+  out.goes_on_high = volume.goes_on_high;
   out.labels = volume.labels;
   out.kind = volume.kind;
   out.warnings = volume.warnings;

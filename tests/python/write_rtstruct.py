@@ -210,5 +210,6 @@ def case(name, path):
         sys.exit(f"no case {name}")
 
 
-for wanted in sys.argv[2:]:
-    case(wanted, f"{sys.argv[1]}/{wanted}.dcm")
+if __name__ == "__main__":
+    for wanted in sys.argv[2:]:
+        case(wanted, f"{sys.argv[1]}/{wanted}.dcm")

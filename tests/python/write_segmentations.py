@@ -12,6 +12,7 @@ import json
 import os
 import sys
 
+sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 try:
     import nibabel
@@ -361,6 +362,15 @@ def image_case(folder, name):
     if name == "series_two":
         uids = [write_series(path, values, prefix="a"), write_series(path, values, prefix="b")]
         return expect(folder, name, path, [{"uid": u} for u in uids], [])
+    if name == "series_mpeg":
+        write_series(path, values)
+        for file in os.listdir(path):
+            ds = pydicom.dcmread(f"{path}/{file}")
+            ds.file_meta.TransferSyntaxUID = "1.2.840.10008.1.2.4.100"
+            ds.PixelData = pydicom.encaps.encapsulate([b"\0\0\1\xb3" + b"\7" * 60])
+            ds["PixelData"].is_undefined_length = True
+            ds.save_as(f"{path}/{file}")
+        return expect(folder, name, path, [], [])
     if name == "series_ct":
         write_series(path, values * 100, intercept=-1024)
         return expect(folder, name, path, [], [])
@@ -396,4 +406,5 @@ def image_case(folder, name):
 
 
 for wanted in sys.argv[2:]:
-    {"s": seg_case, "n": nrrd_case}.get(wanted[0] if wanted[:3] in ("seg", "nrr") else "", image_case)(sys.argv[1], wanted)
+    write_case = {"seg": seg_case, "nrrd": nrrd_case}.get(wanted.split("_")[0], image_case)
+    write_case(sys.argv[1], wanted)
