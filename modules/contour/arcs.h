@@ -55,4 +55,7 @@ SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules);
 /// Simplifies arcs with tolerance (pixels); see extract_sections. Returns each arc's kept vertices.
 std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px);
 
+/// The same for arcs whose vertices lie anywhere; tolerance in grid units. Only crossings are looked after.
+std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance);
+
 }  // namespace stackmesh

@@ -10,7 +10,8 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kSmallest_px = 0.02;  // below this tolerance every vertex is kept
+constexpr double kSmallest_px = 0.02;   // below this tolerance every vertex is kept
+constexpr double kSmallest_rel = 0.04;  // the same for free arcs, as a share of the tolerance asked for
 
 /// A chord that stands for the vertices [from, to] of an arc's chain.
 struct Chord {
@@ -20,7 +21,9 @@ struct Chord {
 
 class ArcSimplifier {
  public:
-  ArcSimplifier(const std::vector<Arc>& arcs, double tolerance_px) : arcs_(arcs), tolerance_(tolerance_px) {}
+  /// @param centres pixel centres keep their labels: vertices lie on pixel corners
+  ArcSimplifier(const std::vector<Arc>& arcs, double tolerance_px, bool centres)
+      : arcs_(arcs), tolerance_(tolerance_px), centres_(centres) {}
 
   std::vector<std::vector<GridPoint>> run() {
     for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -69,7 +72,7 @@ class ArcSimplifier {
       out.push_back({arc, from, to, tolerance});
       return;
     }
-    if (tolerance < kSmallest_px) {
+    if (tolerance < (centres_ ? kSmallest_px : kSmallest_rel * tolerance_)) {
       for (std::int32_t i = from; i < to; ++i) out.push_back({arc, i, i + 1, tolerance});
       return;
     }
@@ -84,7 +87,7 @@ class ArcSimplifier {
       std::int32_t j = i + 1;
       while (j < to && curve[j - from] != kept[k]) ++j;
       if (k + 1 == kept.size()) j = to;
-      if (keeps_centres(chain, i, j))
+      if (!centres_ || keeps_centres(chain, i, j))
         out.push_back({arc, i, j, tolerance});
       else
         add(arc, i, j, tolerance / 2, out);
@@ -161,17 +164,27 @@ class ArcSimplifier {
 
   const std::vector<Arc>& arcs_;
   const double tolerance_;
+  const bool centres_;
   std::vector<Chord> chords_;
 };
 
-}  // namespace
-
-std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px) {
-  if (tolerance_px > 0) return ArcSimplifier(arcs, tolerance_px).run();
+std::vector<std::vector<GridPoint>> all_vertices(const std::vector<Arc>& arcs) {
   std::vector<std::vector<GridPoint>> out(arcs.size());
   for (std::size_t a = 0; a < arcs.size(); ++a)
     for (const CrackVertex& v : arcs[a].chain) out[a].push_back(v.position);
   return out;
+}
+
+}  // namespace
+
+std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px) {
+  if (tolerance_px > 0) return ArcSimplifier(arcs, tolerance_px, true).run();
+  return all_vertices(arcs);
+}
+
+std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance) {
+  if (tolerance > 0) return ArcSimplifier(arcs, tolerance / kGridPerPixel, false).run();
+  return all_vertices(arcs);
 }
 
 }  // namespace stackmesh

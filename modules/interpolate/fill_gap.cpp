@@ -15,13 +15,21 @@ constexpr int kHighest = std::numeric_limits<int>::max();
 Pixels tissue_of(const Pixels& slice) {
   Pixels tissue = slice;
   for (std::uint16_t& l : tissue.label) l = l != 0 ? 1 : 0;
+  tissue.border.clear();
+  for (BorderPiece piece : slice.border) {
+    piece.left = piece.left != 0 ? 1 : 0;
+    piece.right = piece.right != 0 ? 1 : 0;
+    if (piece.left != piece.right) tissue.border.push_back(piece);
+  }
   return tissue;
 }
 
 class GapFiller {
  public:
-  GapFiller(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm)
+  GapFiller(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm,
+            std::vector<LayerDepth>* depth)
       : gap_(gap),
+        depth_(depth),
         per_gap_(per_gap),
         tension_(tension),
         pixel_mm_(pixel_mm),
@@ -45,13 +53,20 @@ class GapFiller {
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       for (std::int32_t g : bodies_[b].groups) body_of_[g] = static_cast<std::ptrdiff_t>(b);
     std::vector<int> height(size_);  // of the body that holds the pixel, 0: background
+    if (depth_) depth_->resize(per_gap_);
     for (int j = 1; j <= per_gap_; ++j) {
       std::fill(height.begin(), height.end(), 0);
+      if (depth_) {
+        nearest_outline_.assign(size_, kLowest);
+        margin_.assign(size_, 0);
+        placed_.assign(size_, 0);
+      }
       const double t = static_cast<double>(j) / (per_gap_ + 1);
       for (const Body& body : bodies_) place(body, t, out, height, out.group[j]);
       for (std::size_t p = 0; p < size_; ++p)
         if (gap_.low->label[p] != 0 && gap_.low->label[p] == gap_.high->label[p])
           out.group[j][p] = out.group.front()[p];
+      if (depth_) (*depth_)[j - 1] = depth_of(out.group[j]);
     }
     keep_components(out);
     return out;
@@ -64,6 +79,19 @@ class GapFiller {
     std::vector<std::int32_t> groups;
     std::vector<GroupField> fields;  // of the groups, if there are several
   };
+
+  LayerDepth depth_of(const std::vector<std::int32_t>& layer) const {
+    constexpr float kFar = 8;  // pixels
+    LayerDepth depth;
+    depth.tissue.resize(size_);
+    depth.label.resize(size_);
+    for (std::size_t p = 0; p < size_; ++p) {
+      const float outline = static_cast<float>(nearest_outline_[p]) / kSteps;
+      depth.tissue[p] = std::clamp(layer[p] != 0 ? outline : -outline, 0.0f, kFar);
+      depth.label[p] = layer[p] == placed_[p] ? std::clamp(static_cast<float>(margin_[p]) / kSteps, 0.0f, kFar) : 0.0f;
+    }
+    return depth;
+  }
 
   void collect_bodies() {
     const std::vector<Group>& groups = labels_.groups.list;
@@ -116,7 +144,9 @@ class GapFiller {
              std::vector<std::int32_t>& layer) {
     const double steps = kSteps / std::min(pixel_mm_[0], pixel_mm_[1]);
     const Box& box = body.outline.box();
-    body.outline.blend(t, tension_, steps, outline_);
+    body.outline.blend(t, tension_, gap_.neighbours_rel, steps, outline_);
+    if (depth_)
+      for_pixels(box, [&](std::size_t p, std::size_t i) { nearest_outline_[p] = std::max(nearest_outline_[p], outline_[i]); });
     if (body.fields.empty()) {
       for_pixels(box, [&](std::size_t p, std::size_t i) {
         if (outline_[i] <= height[p]) return;
@@ -126,15 +156,20 @@ class GapFiller {
       return;
     }
     best_.assign(box.area(), kLowest);
+    second_.assign(box.area(), kLowest);
     best_group_.assign(box.area(), 0);
     for (std::size_t g = 0; g < body.groups.size(); ++g) {
       const Box& inner = body.fields[g].box();
-      body.fields[g].blend(t, tension_, steps, value_);
+      body.fields[g].blend(t, tension_, gap_.neighbours_rel, steps, value_);
       const std::int32_t group = body.groups[g];
       for_pixels(inner, [&](std::size_t p, std::size_t i) {
         const std::size_t x = p % width_ - box.x0, y = p / width_ - box.y0, b = y * box.width() + x;
         const bool tie = value_[i] == best_[b] && rank(out, group, p) > rank(out, best_group_[b], p);
-        if (value_[i] <= best_[b] && !tie) return;
+        if (value_[i] <= best_[b] && !tie) {
+          second_[b] = std::max(second_[b], value_[i]);
+          return;
+        }
+        second_[b] = best_[b];
         best_[b] = value_[i];
         best_group_[b] = group;
       });
@@ -146,6 +181,9 @@ class GapFiller {
       if (claim <= height[p] || best_group_[i] == 0) return;
       height[p] = claim;
       layer[p] = best_group_[i];
+      if (!depth_) return;
+      placed_[p] = best_group_[i];
+      margin_[p] = second_[i] == kLowest ? kHighest : static_cast<int>(std::min<std::int64_t>(kHighest, static_cast<std::int64_t>(best_[i]) - second_[i]));
     });
   }
 
@@ -164,6 +202,7 @@ class GapFiller {
   }
 
   const Gap& gap_;
+  std::vector<LayerDepth>* depth_;
   int per_gap_;
   double tension_;
   std::array<double, 2> pixel_mm_;
@@ -172,14 +211,17 @@ class GapFiller {
   Partition labels_;
   std::vector<Body> bodies_;
   std::vector<std::ptrdiff_t> body_of_;  // of a group
-  std::vector<int> outline_, value_, best_;
+  std::vector<int> outline_, value_, best_, second_;
   std::vector<std::int32_t> best_group_;
+  std::vector<int> nearest_outline_, margin_;  // per pixel of the layer, if depths are asked for
+  std::vector<std::int32_t> placed_;
 };
 
 }  // namespace
 
-GapLayers fill_gap(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm) {
-  return GapFiller(gap, per_gap, tension, pixel_mm).run();
+GapLayers fill_gap(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm,
+                   std::vector<LayerDepth>* depth) {
+  return GapFiller(gap, per_gap, tension, pixel_mm, depth).run();
 }
 
 }  // namespace stackmesh::interpolate

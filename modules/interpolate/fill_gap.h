@@ -10,9 +10,18 @@ namespace stackmesh::interpolate {
 /// alike.
 struct Gap {
   const Pixels *before = nullptr, *low = nullptr, *high = nullptr, *after = nullptr;
+  std::array<double, 2> neighbours_rel = {1, 1};  ///< the gaps beneath and above, as a share of this one
 };
 
-/// The virtual layers of a gap between its real ones, components kept.
-GapLayers fill_gap(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm);
+/// How far a virtual layer's pixels are inside or outside, in pixels, 0 where it is not known.
+struct LayerDepth {
+  std::vector<float> tissue;  ///< distance to the outline of the tissue
+  std::vector<float> label;   ///< by how much the pixel's label wins over the next one
+};
+
+/// The virtual layers of a gap between its real ones, evenly spaced, components kept.
+/// @param depth if given, one entry for each virtual layer.
+GapLayers fill_gap(const Gap& gap, int per_gap, double tension, const std::array<double, 2>& pixel_mm,
+                   std::vector<LayerDepth>* depth = nullptr);
 
 }  // namespace stackmesh::interpolate

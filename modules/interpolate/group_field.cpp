@@ -9,11 +9,17 @@ namespace {
 constexpr int kMargin = 3;            // pixels round a group that the spline may reach by overshooting
 constexpr double kFullMotion = 0.05;  // relative gain of overlap from which a group follows its centre fully
 
-/// Weights of four slices at t between the second and the third: a cardinal spline.
-std::array<double, 4> spline_weights(double t, double tension) {
+constexpr double kShortest = 0.25;    // neighbouring gaps count as no shorter than this share of the gap
+
+/// Weights of four slices at t between the second and the third: a cardinal spline; the slopes are those of
+/// parabolas through three slices, so that unevenly spaced slices are no matter.
+std::array<double, 4> spline_weights(double t, double tension, double beneath, double above) {
   const double t2 = t * t, t3 = t2 * t;
-  const double slope_low = tension * (t3 - 2 * t2 + t), slope_high = tension * (t3 - t2);
-  return {-slope_low, 2 * t3 - 3 * t2 + 1 - slope_high, 3 * t2 - 2 * t3 + slope_low, slope_high};
+  const double low = 2 * tension * (t3 - 2 * t2 + t), high = 2 * tension * (t3 - t2);  // of the slopes
+  const double b0 = 1 / (beneath * (beneath + 1)), b2 = beneath / (beneath + 1);
+  const double a1 = above / (above + 1), a3 = 1 / (above * (above + 1));
+  return {-low * b0, 2 * t3 - 3 * t2 + 1 + low * (b0 - b2) - high * a1, 3 * t2 - 2 * t3 + low * b2 + high * (a1 - a3),
+          high * a3};
 }
 
 /// sum += weight * the field moved by (dx, dy) pixels, bilinear, continued beyond its box by its rim.
@@ -87,7 +93,12 @@ GroupField::Slice GroupField::slice(const Islands& islands, int width, const Box
     }
   s.x /= std::max(1.0, count);
   s.y /= std::max(1.0, count);
-  if (count > 0) s.field = signed_distance(mask, box_, pixel_mm, limit_mm);
+  if (count == 0) return s;
+  std::vector<BorderPiece> border;
+  for (const BorderPiece& piece : islands.border)
+    if ((piece.left > 0 && belongs(piece.left)) != (piece.right > 0 && belongs(piece.right))) border.push_back(piece);
+  s.field = border.empty() ? signed_distance(mask, box_, pixel_mm, limit_mm)
+                           : signed_distance(mask, border, box_, pixel_mm, limit_mm);
   return s;
 }
 
@@ -134,7 +145,8 @@ double GroupField::share_of_motion() const {
   return still > 0 ? std::clamp((1 - moved / still) / kFullMotion, 0.0, 1.0) : 0;
 }
 
-void GroupField::blend(double t, double tension, double steps_per_mm, std::vector<int>& out) const {
+void GroupField::blend(double t, double tension, const std::array<double, 2>& neighbours_rel,
+                       double steps_per_mm, std::vector<int>& out) const {
   std::array<double, 4> w = {0, 0, 0, 0};
   double sunk = 0;
   if (!slices_[1].present() || !slices_[2].present()) {
@@ -144,15 +156,16 @@ void GroupField::blend(double t, double tension, double steps_per_mm, std::vecto
     sunk = peak_ * (away < 0.5 ? 1 - std::sqrt(1 - 4 * away * away) : 2 * away);
     w[only] = 1;
   } else {
-    w = spline_weights(t, tension);
+    const double beneath = std::max(kShortest, neighbours_rel[0]), above = std::max(kShortest, neighbours_rel[1]);
+    w = spline_weights(t, tension, beneath, above);
     if (!slices_[0].present()) {  // it ends beyond: as if it went on straight
-      w[1] += 2 * w[0];
-      w[2] -= w[0];
+      w[1] += (1 + beneath) * w[0];
+      w[2] -= beneath * w[0];
       w[0] = 0;
     }
     if (!slices_[3].present()) {
-      w[2] += 2 * w[3];
-      w[1] -= w[3];
+      w[2] += (1 + above) * w[3];
+      w[1] -= above * w[3];
       w[3] = 0;
     }
   }

@@ -25,8 +25,10 @@ class GroupField {
   /// Where the values are; elsewhere the group is not.
   const Box& box() const { return box_; }
 
-  /// The values at height t in (0, 1), times steps_per_mm, towards 0, row by row of the box.
-  void blend(double t, double tension, double steps_per_mm, std::vector<int>& out) const;
+  /// The values at height t in (0, 1), times steps_per_mm, towards 0, row by row of the box. neighbours_rel: the
+  /// gaps beneath and above, as a share of this one.
+  void blend(double t, double tension, const std::array<double, 2>& neighbours_rel, double steps_per_mm,
+             std::vector<int>& out) const;
 
  private:
   struct Slice {

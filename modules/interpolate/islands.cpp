@@ -1,6 +1,7 @@
 #include "interpolate/islands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace stackmesh::interpolate {
@@ -26,6 +27,30 @@ class UnionFind {
  private:
   std::vector<std::int32_t> parent_;
 };
+
+/// The island of that label just beside a piece of its contour; -1 if the raster has none there.
+std::int32_t island_beside(const BorderPiece& piece, bool left, const Pixels& slice, const Islands& islands) {
+  const std::int32_t label = left ? piece.left : piece.right;
+  if (label == 0) return 0;
+  const double dx = piece.bx - piece.ax, dy = piece.by - piece.ay, length = std::hypot(dx, dy);
+  const double side = length > 0 ? (left ? 0.3 : -0.3) / length : 0;
+  for (double t : {0.5, 0.2, 0.8}) {
+    const double x = piece.ax + t * dx - side * dy, y = piece.ay + t * dy + side * dx;
+    const int px = static_cast<int>(std::lround(x)), py = static_cast<int>(std::lround(y));
+    double nearest = 1e300;
+    std::int32_t island = -1;
+    for (int v = std::max(0, py - 1); v <= std::min(slice.height - 1, py + 1); ++v)
+      for (int u = std::max(0, px - 1); u <= std::min(slice.width - 1, px + 1); ++u) {
+        const std::size_t p = static_cast<std::size_t>(v) * slice.width + u;
+        const double d = (u - x) * (u - x) + (v - y) * (v - y);
+        if (slice.label[p] != label || d >= nearest) continue;
+        nearest = d;
+        island = islands.of[p];
+      }
+    if (island >= 0) return island;
+  }
+  return -1;
+}
 
 /// Which islands of `outer` lie over which group of the slab.
 void link(const Islands& outer, const Islands& inner, const std::vector<std::int32_t>& group_of,
@@ -104,6 +129,12 @@ Islands find_islands(const Pixels& slice) {
       box.x1 = std::max(box.x1, x + 1);
       box.y1 = y + 1;
     }
+  for (const BorderPiece& piece : slice.border) {
+    BorderPiece between = piece;
+    between.left = island_beside(piece, true, slice, islands);
+    between.right = island_beside(piece, false, slice, islands);
+    if (between.left != between.right) islands.border.push_back(between);
+  }
   return islands;
 }
 

@@ -15,10 +15,18 @@ struct Box {
   Box grown(int pixels, int max_width, int max_height) const;
 };
 
+/// A piece of exact contour, in pixels: (x, y) is the centre of pixel (x, y). What lies on its left and right are
+/// labels or, in Islands, islands (-1: one that the raster does not show).
+struct BorderPiece {
+  double ax = 0, ay = 0, bx = 0, by = 0;
+  std::int32_t left = 0, right = 0;
+};
+
 /// A slice, cropped; labels as indices.
 struct Pixels {
   int width = 0, height = 0;
   std::vector<std::uint16_t> label;
+  std::vector<BorderPiece> border;  ///< the contours that the raster stands for; none: they are the pixel cracks
 };
 
 /// The 4-connected islands of equal label of a slice.
@@ -26,6 +34,7 @@ struct Islands {
   std::vector<std::int32_t> of;      ///< per pixel; 0 is background
   std::vector<std::uint16_t> label;  ///< per island; [0] is background
   std::vector<Box> box;              ///< per island
+  std::vector<BorderPiece> border;   ///< exact contours between islands, if known
   int count() const { return static_cast<int>(label.size()); }
 };
 Islands find_islands(const Pixels& slice);

@@ -81,7 +81,81 @@ void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel
   }
 }
 
+/// The nearest of some pieces of contour for each pixel of a box.
+class NearestPiece {
+ public:
+  NearestPiece(const Box& box, const std::vector<BorderPiece>& pieces, const std::array<double, 2>& pixel_mm)
+      : box_(box), pieces_(pieces), mm_(pixel_mm), piece_(box.area(), -1), squared_(box.area(), std::numeric_limits<float>::infinity()) {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) seed(static_cast<std::int32_t>(i));
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int y = box_.y0; y < box_.y1; ++y) sweep_row(y, -1);
+      for (int y = box_.y1 - 1; y >= box_.y0; --y) sweep_row(y, 1);
+    }
+  }
+  /// mm; infinite if there is no piece in the box
+  float at(int x, int y) const { return std::sqrt(squared_[index(x, y)]); }
+
+ private:
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y - box_.y0) * box_.width() + (x - box_.x0); }
+
+  void offer(int x, int y, std::int32_t piece) {
+    const std::size_t p = index(x, y);
+    if (piece < 0 || piece == piece_[p]) return;
+    const BorderPiece& b = pieces_[piece];
+    const double dx = (b.bx - b.ax) * mm_[0], dy = (b.by - b.ay) * mm_[1], px = (x - b.ax) * mm_[0], py = (y - b.ay) * mm_[1];
+    const double length = dx * dx + dy * dy, t = length > 0 ? std::clamp((px * dx + py * dy) / length, 0.0, 1.0) : 0.0;
+    const float d = static_cast<float>((px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy));
+    if (d >= squared_[p]) return;
+    squared_[p] = d;
+    piece_[p] = piece;
+  }
+
+  /// The pixels round the piece.
+  void seed(std::int32_t i) {
+    const BorderPiece& b = pieces_[i];
+    const int steps = 1 + static_cast<int>(2 * std::max(std::abs(b.bx - b.ax), std::abs(b.by - b.ay)));
+    for (int s = 0; s <= steps; ++s) {
+      const double t = static_cast<double>(s) / steps;
+      const int x = static_cast<int>(std::floor(b.ax + t * (b.bx - b.ax))), y = static_cast<int>(std::floor(b.ay + t * (b.by - b.ay)));
+      for (int v = std::max(box_.y0, y); v <= std::min(box_.y1 - 1, y + 1); ++v)
+        for (int u = std::max(box_.x0, x); u <= std::min(box_.x1 - 1, x + 1); ++u) offer(u, v, i);
+    }
+  }
+
+  /// Takes over from the row at y + from_row, then along the row both ways.
+  void sweep_row(int y, int from_row) {
+    const int from = y + from_row;
+    if (from >= box_.y0 && from < box_.y1)
+      for (int x = box_.x0; x < box_.x1; ++x)
+        for (int u = std::max(box_.x0, x - 1); u <= std::min(box_.x1 - 1, x + 1); ++u) offer(x, y, piece_[index(u, from)]);
+    for (int x = box_.x0 + 1; x < box_.x1; ++x) offer(x, y, piece_[index(x - 1, y)]);
+    for (int x = box_.x1 - 2; x >= box_.x0; --x) offer(x, y, piece_[index(x + 1, y)]);
+  }
+
+  const Box& box_;
+  const std::vector<BorderPiece>& pieces_;
+  std::array<double, 2> mm_;
+  std::vector<std::int32_t> piece_;
+  std::vector<float> squared_;
+};
+
 }  // namespace
+
+Field signed_distance(const Mask& mask, const std::vector<BorderPiece>& border, const Box& box,
+                      const std::array<double, 2>& pixel_mm, double limit_mm) {
+  const float limit = static_cast<float>(limit_mm);
+  const NearestPiece nearest(mask.box, border, pixel_mm);
+  Field field;
+  field.box = box;
+  field.value.reserve(box.area());
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x) {
+      const bool in = mask.in[static_cast<std::size_t>(y - mask.box.y0) * mask.box.width() + (x - mask.box.x0)] != 0;
+      const float d = std::min(limit, nearest.at(x, y));
+      field.value.push_back(in ? d : -d);
+    }
+  return field;
+}
 
 Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm,
                       double limit_mm) {

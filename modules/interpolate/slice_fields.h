@@ -29,4 +29,9 @@ struct Mask {
 Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm,
                       double limit_mm);
 
+/// The same from exact contours: the sign is the mask's, the distance that to the nearest of the pieces (each
+/// pixel takes over its neighbours' nearest pieces in four sweeps, as in [Danielsson 1980]).
+Field signed_distance(const Mask& mask, const std::vector<BorderPiece>& border, const Box& box,
+                      const std::array<double, 2>& pixel_mm, double limit_mm);
+
 }  // namespace stackmesh::interpolate

@@ -1,5 +1,7 @@
 #include "model/stack.h"
 
+#include <cmath>
+
 namespace stackmesh {
 
 double label_area_mm2(const Stack& stack, const Section& section, Label label) {
@@ -17,8 +19,9 @@ double end_half_gap_mm(const Stack& stack, bool high) {
   if (stack.end_gap_mm > 0) return 0.5 * stack.end_gap_mm;
   const std::size_t n = stack.sections.size();
   if (n < 2) return 0.5 * stack.pixel_mm;
-  const std::size_t k = high ? n - 2 : 0;
-  return 0.5 * (stack.sections[k + 1].z_mm - stack.sections[k].z_mm);
+  std::size_t beside = high ? n - 2 : 1;  // the next real section
+  while (stack.sections[beside].interpolated && beside > 0 && beside + 1 < n) high ? --beside : ++beside;
+  return 0.5 * std::abs(stack.sections[beside].z_mm - stack.sections[high ? n - 1 : 0].z_mm);
 }
 
 }  // namespace stackmesh

@@ -37,7 +37,7 @@ struct Stack {
   double grid_x_mm = 1, grid_y_mm = 1;  ///< size of a grid unit along x and y
   double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for contour input a typical edge
   bool slices = true;   ///< true: a section stands for a slice that reaches half a gap to either side; false: plane cuts
-  double end_gap_mm = 0;  ///< gap that the first and last section stand for; 0: the gap to their neighbour
+  double end_gap_mm = 0;  ///< gap that the first and last section stand for; 0: the gap to the next real one
   std::vector<Section> sections;
   std::vector<LabelInfo> labels;        ///< labels[0] is the background
   Frame frame;                          ///< stack coordinates (mm) to world

@@ -8,6 +8,7 @@
 #include "interpolate/virtual_slices.h"
 #include "pipeline/stage_clock.h"
 #include "report/html_report.h"
+#include "pipeline/virtual_sections.h"
 #include "volume/raise_order.h"
 
 namespace stackmesh {
@@ -103,8 +104,9 @@ class MeshRun {
     check_stack_axis(input_, o_.contours.axis);
     if (input_.sections) {
       stack_ = std::move(*input_.sections);
+      for (const Section& s : stack_.sections) report_.contours.vertices_traced += s.points.size();
+      add_virtual_sections(stack_, o_.virtual_sections, o_.threads);
       for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
-      report_.contours.vertices_traced = report_.contours.vertices;
     } else {
       ContourResult c = extract_with_virtual_sections();
       stack_ = std::move(c.stack);
