@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kMargin = 3;            // pixels round a group that the spline may reach by overshooting
 constexpr double kFullMotion = 0.05;  // relative gain of overlap from which a group follows its centre fully
+constexpr double kNear = 0.25, kFar = 0.45;  // motion, in widths of the smaller slice: not followed, followed fully
 
 constexpr double kShortest = 0.25;    // neighbouring gaps count as no shorter than this share of the gap
 
@@ -142,7 +143,12 @@ double GroupField::share_of_motion() const {
   if (dx == 0 && dy == 0) return 0;
   const double still = static_cast<double>(difference(low.field, high.field, 0, 0));
   const double moved = static_cast<double>(difference(low.field, high.field, dx, dy));
-  return still > 0 ? std::clamp((1 - moved / still) / kFullMotion, 0.0, 1.0) : 0;
+  if (!(still > 0)) return 0;
+  const auto pixels = [](const Field& f) {
+    return static_cast<double>(std::count_if(f.value.begin(), f.value.end(), [](float d) { return d > 0; }));
+  };
+  const double widths = std::hypot(dx, dy) / std::sqrt(std::min(pixels(low.field), pixels(high.field)));
+  return std::clamp((1 - moved / still) / kFullMotion, 0.0, 1.0) * std::clamp((widths - kNear) / (kFar - kNear), 0.0, 1.0);
 }
 
 void GroupField::blend(double t, double tension, const std::array<double, 2>& neighbours_rel,

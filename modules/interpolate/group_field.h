@@ -39,7 +39,7 @@ class GroupField {
   template <class Belongs>
   Slice slice(const Islands& islands, int width, const Box& from, double limit_mm,
               const std::array<double, 2>& pixel_mm, const Belongs& belongs) const;
-  /// Follows the centres as far as that makes the two slices overlap better.
+  /// Follows the centres as far as that makes the two slices overlap better, if they move far for their width.
   double share_of_motion() const;
 
   Box box_;

@@ -12,7 +12,7 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kFeaturesAcross = 48;     // of a typical contour
+constexpr double kFeaturesAcross = 64;     // of a typical contour
 constexpr double kMostPoints = 5e5;        // of the virtual sections, estimated
 constexpr double kMostPixels = 1024;       // of the raster along the longer side
 constexpr double kTolerance_px = 0.1;      // of the raster

@@ -12,7 +12,7 @@ namespace stackmesh {
 /// @return how many were added
 std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads);
 
-/// What counts as a pixel of contour input, mm: a 48th of a typical contour's length or width, but not below the
+/// What counts as a pixel of contour input, mm: a 64th of a typical contour's length or width, but not below the
 /// typical edge. Where virtual sections so close would hold more than about half a million points, it is longer.
 double contour_feature_mm(const Stack& stack);
 
