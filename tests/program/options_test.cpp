@@ -135,6 +135,26 @@ TEST_F(Options, SnapAndSimplifyChangeTheVertexCount) {
   EXPECT_NEAR(row(snapped, 1).at("dice"), 1, 0.02);
 }
 
+TEST_F(Options, VirtualSectionsGoBetweenContours) {
+  const std::vector<std::string> pair = {"1=" + testdata("two_labels/outer.cnt"), "2=" + testdata("two_labels/inner.cnt")};
+  const auto with = [&](const std::string& number) {
+    std::vector<std::string> arguments = {"mesh"};
+    arguments.insert(arguments.end(), pair.begin(), pair.end());
+    arguments.insert(arguments.end(), {"--no-enhance", "--interpolate", number, "-o", out("a.vtu"), "--report", out("R.json")});
+    succeeds(arguments);
+    return report();
+  };
+  const Json none = with("0"), three = with("3"), chosen = with("auto");
+  for (const Json& r : {none, three, chosen}) {
+    EXPECT_EQ(r.at("input").at("sections"), 9);
+    EXPECT_EQ(r.at("volume").at("closure"), "verified");
+    EXPECT_EQ(r.at("stitched").at("self_intersections"), 0);
+    for (int label : {1, 2}) EXPECT_NEAR(row(r, label).at("tet_volume_mm3").get<double>() / row(none, label).at("tet_volume_mm3").get<double>(), 1, 0.03);
+  }
+  EXPECT_GT(three.at("contours").at("vertices"), 2 * none.at("contours").at("vertices").get<double>());
+  EXPECT_GT(chosen.at("contours").at("vertices"), none.at("contours").at("vertices"));
+}
+
 TEST_F(Options, TetrahedraCanBeRefined) {
   const Json plain = mesh({testdata("tube.cnt")}),
              fine = mesh({testdata("tube.cnt"), "--max-volume", "0.5", "--radius-edge", "2"});
