@@ -29,7 +29,7 @@ struct MeshArguments {
   double snap_mm = 0, timeout_s = 600;
   double max_volume = 0, radius_edge = 0, dihedral = 0;
   int order = 1;
-  bool strict = false, per_label = false, msh2 = false;
+  bool strict = false, per_label = false, msh2 = false, yes = false;
   std::string return_parameters;  // of 3D Slicer
 };
 
@@ -62,6 +62,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
       command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
       command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")->check(CLI::Range(1, 2))->capture_default_str(),
+      command.add_flag("--yes", a.yes, "go on when more than 10 million tetrahedra are estimated"),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
       command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
   if (target == Target::surface)
@@ -87,6 +88,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.stitch.snap_mm = a.snap_mm;
   parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
   o.order = a.order;
+  o.many_tets = a.yes;
   if (a.max_volume > 0) o.fill.max_volume_mm3 = a.max_volume;
   if (a.radius_edge > 0) o.fill.radius_edge = a.radius_edge;
   if (a.dihedral > 0) o.fill.dihedral_deg = a.dihedral;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "interpolate/virtual_slices.h"
@@ -91,6 +92,9 @@ class MeshRun {
     const std::vector<std::size_t> counts = count_voxels(v);
     for (std::size_t k = 1; k < v.labels.size(); ++k)
       report_.labels[k - 1].input_volume_mm3 = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
+    double volume_mm3 = 0;
+    for (const LabelReport& row : report_.labels) volume_mm3 += row.input_volume_mm3.value_or(0);
+    if (o_.target == Target::volume && o_.fill.max_volume_mm3) refuse_too_many(1.5 * volume_mm3 / *o_.fill.max_volume_mm3);
   }
 
   bool wants_html() const {
@@ -212,8 +216,12 @@ class MeshRun {
     options.known_sound = true;
     if (report_.surface_level == "enhanced") {  // good triangles: inner tetrahedra may be asked for quality
       if (!options.radius_edge) options.radius_edge = 1.4;
-      if (!options.dihedral_deg) options.dihedral_deg = 12;
+      if (!options.max_volume_mm3) options.inner_growth = 2;
+      options.improve_deg = std::max(24.0, options.dihedral_deg.value_or(0));
+    } else if (options.dihedral_deg) {
+      options.improve_deg = options.dihedral_deg;
     }
+    refuse_too_many(estimate_tets(surface_, options));
     FillResult result = fill_volume(surface_, options);
     if (!result.fallback.empty()) warn("the volume mesher fell back: " + result.fallback + "; then " + result.message);
     if (result.status == FillResult::Status::verified) {
@@ -227,6 +235,14 @@ class MeshRun {
       if (result.status == FillResult::Status::crashed) mend_ = "free some memory, or mesh fewer labels at once";
       offending_ = std::move(result.offending_triangles);
     }
+  }
+
+  void refuse_too_many(double tets) const {
+    if (o_.many_tets || tets <= 1e7) return;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f", tets / 1e6);
+    fail_usage("about " + std::string(text) + " million tetrahedra would be made", report_.input.path,
+               "ask for larger ones with --edge-length or --max-volume, or say --yes if you want that many");
   }
 
   /// In stack coordinates, where flat caps are planes across an axis.

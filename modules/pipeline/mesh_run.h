@@ -31,6 +31,7 @@ struct MeshRunOptions {
   EnhanceOptions enhancement;                     ///< pixel and gap are set by the run; label_edge_mm by label_edges_text
   std::vector<std::pair<std::string, double>> label_edges_text;
   FillOptions fill;
+  bool many_tets = false;                         ///< more than 10 million tetrahedra are wanted
   int order = 1;                                  ///< of the tetrahedra: 1 linear, 2 quadratic (10 nodes)
   std::string space = "lps";                      ///< "lps" or "ras"
   std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format

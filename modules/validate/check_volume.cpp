@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 
 #include "base/error.h"
@@ -45,7 +46,15 @@ void check_input(const TetMesh& mesh) {
 
 struct Shape {
   double dihedral_min_deg, dihedral_max_deg, radius_edge, scaled_jacobian, volume_mm3;
+  std::array<std::int8_t, 2> sharpest = {0, 1};  // corners of the edge with the smallest dihedral
+  std::array<std::uint8_t, 6> bins = {0, 0, 0, 0, 0, 35};
 };
+
+/// Edge between faces i and j of a tet: the two corners that both have.
+constexpr std::int8_t kEdgeOfFaces[4][4][2] = {{{0, 0}, {2, 3}, {1, 3}, {1, 2}},
+                                              {{2, 3}, {0, 0}, {0, 3}, {0, 2}},
+                                              {{1, 3}, {0, 3}, {0, 0}, {0, 1}},
+                                              {{1, 2}, {0, 2}, {0, 1}, {0, 0}}};
 
 Shape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = c - a, w = d - a, e = c - b, f = d - b, g = d - c;
@@ -59,6 +68,7 @@ Shape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     s.radius_edge = norm(to_centre) / (2 * std::abs(det)) / std::min({lu, lv, lw, le, lf, lg});
   }
   Vec3 n[4] = {cross(e, f), cross(w, v), cross(u, w), cross(v, u)};
+  int count = 0;
   double smallest = 1, largest = -1;  // cosines of the dihedrals, largest dihedral first
   for (Vec3& m : n) {
     const double length = norm(m);
@@ -68,7 +78,10 @@ Shape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   for (int i = 0; i < 4; ++i)
     for (int j = i + 1; j < 4; ++j) {
       const double cosine = -dot(n[i], n[j]);
+      if (cosine > largest) s.sharpest = {kEdgeOfFaces[i][j][0], kEdgeOfFaces[i][j][1]};
       smallest = std::min(smallest, cosine), largest = std::max(largest, cosine);
+      const double angle = kDegrees * std::acos(std::clamp(cosine, -1.0, 1.0));
+      s.bins[count++] = static_cast<std::uint8_t>(std::min(35.0, angle / 5));
     }
   s.dihedral_min_deg = kDegrees * std::acos(std::clamp(largest, -1.0, 1.0));
   s.dihedral_max_deg = kDegrees * std::acos(std::clamp(smallest, -1.0, 1.0));
@@ -122,6 +135,78 @@ void judge_curved(const TetMesh& mesh, std::size_t t, Shape& shape, char& invert
   inverted = inverted || !(least > 0);
 }
 
+/// Tets below 10 degrees whose sharp edge is one of the surface, where the tets between the two surface triangles next to
+/// them span less than 10 degrees together.
+std::size_t count_in_narrow_wedges(const TetMesh& mesh, const std::vector<Shape>& shapes) {
+  using Edge = std::array<std::int32_t, 2>;
+  using Triangle = std::array<std::int32_t, 3>;
+  const auto edge_of = [](std::int32_t a, std::int32_t b) { return Edge{std::min(a, b), std::max(a, b)}; };
+  struct Around {
+    std::size_t tet;
+    std::int32_t wing[2];  // the corners that are not on the edge
+    double angle;
+    std::size_t group;
+  };
+  std::map<Edge, std::vector<Around>> edges;
+  std::vector<char> ends(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < shapes.size(); ++t) {
+    if (!(shapes[t].dihedral_min_deg < 10)) continue;
+    const Edge e = edge_of(mesh.tets[t][shapes[t].sharpest[0]], mesh.tets[t][shapes[t].sharpest[1]]);
+    edges[e];
+    ends[e[0]] = ends[e[1]] = 1;
+  }
+  if (edges.empty()) return 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) {
+        const auto& v = mesh.tets[t];
+        if (!ends[v[i]] || !ends[v[j]]) continue;
+        const auto at = edges.find(edge_of(v[i], v[j]));
+        if (at == edges.end()) continue;
+        const int k = 6 - i - j;  // the others are k - m and m
+        int m = 0;
+        while (m == i || m == j) ++m;
+        const Vec3 axis = mesh.points[v[j]] - mesh.points[v[i]];
+        const Vec3 a = cross(axis, mesh.points[v[m]] - mesh.points[v[i]]), b = cross(axis, mesh.points[v[k - m]] - mesh.points[v[i]]);
+        at->second.push_back({t, {v[m], v[k - m]}, kDegrees * std::atan2(norm(cross(a, b)), dot(a, b)), at->second.size()});
+      }
+  std::set<Triangle> walls;
+  for (const InterfaceTriangle& f : mesh.faces)
+    if (ends[f.v[0]] + ends[f.v[1]] + ends[f.v[2]] >= 2) {
+      Triangle key = f.v;
+      std::sort(key.begin(), key.end());
+      walls.insert(key);
+    }
+  std::size_t count = 0;
+  for (auto& [edge, around] : edges) {
+    const auto wall = [&, e = edge](std::int32_t wing) {
+      Triangle key = {e[0], e[1], wing};
+      std::sort(key.begin(), key.end());
+      return walls.count(key) > 0;
+    };
+    bool bounded = false;
+    for (std::size_t i = 0; i < around.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        for (const std::int32_t w : around[i].wing)
+          if ((w == around[j].wing[0] || w == around[j].wing[1]) && !wall(w)) {
+            const std::size_t from = std::max(around[i].group, around[j].group), to = std::min(around[i].group, around[j].group);
+            for (Around& a : around)
+              if (a.group == from) a.group = to;
+          }
+    std::map<std::size_t, double> span;
+    for (const Around& a : around) {
+      span[a.group] += a.angle;
+      bounded = bounded || wall(a.wing[0]) || wall(a.wing[1]);
+    }
+    if (!bounded) continue;
+    for (const Around& a : around)
+      if (shapes[a.tet].dihedral_min_deg < 10 && span[a.group] < 10 &&
+          edge_of(mesh.tets[a.tet][shapes[a.tet].sharpest[0]], mesh.tets[a.tet][shapes[a.tet].sharpest[1]]) == edge)
+        ++count;
+  }
+  return count;
+}
+
 void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
   std::vector<Shape> shapes(mesh.tets.size());
   std::vector<char> inverted(mesh.tets.size());
@@ -144,6 +229,7 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
     ++label.first;
     label.second += s.volume_mm3;
     check.inverted += inverted[t];
+    for (const std::uint8_t bin : s.bins) ++check.dihedral_histogram[bin];
     dihedrals[t] = s.dihedral_min_deg;
     check.dihedral_below_10 += s.dihedral_min_deg < 10;
     check.dihedral_max_deg = std::max(check.dihedral_max_deg, s.dihedral_max_deg);
@@ -151,6 +237,7 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
     check.scaled_jacobian_min =
         t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
   }
+  check.in_narrow_wedges = count_in_narrow_wedges(mesh, shapes);
   check.dihedral_p1_deg = percentile(dihedrals, 0.01);
   check.dihedral_min_deg = percentile(dihedrals, 0);
   for (const auto& [label, sum] : labels)

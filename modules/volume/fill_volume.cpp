@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "volume/improve_tets.h"
 #include "volume/label_tets.h"
 #include "volume/worker_process.h"
 #include "volume/worker_protocol.h"
@@ -44,6 +45,8 @@ void check_input(const InterfaceComplex& complex, const FillOptions& options) {
   positive(options.max_volume_mm3, "max-volume");
   positive(options.radius_edge, "radius-edge");
   positive(options.dihedral_deg, "dihedral");
+  positive(options.inner_growth, "inner growth");
+  positive(options.improve_deg, "dihedral");
   if (std::isnan(options.timeout_s)) fail_usage("the time limit is not a number", "timeout", "give seconds");
   if (std::getenv(worker::kGuardVariable))
     fail_internal("the worker call reached fill_volume(): main() must hand it to tetgen_worker_main()",
@@ -190,7 +193,8 @@ class Filler {
     if (is_flat()) return failure(Status::refused, "the surface encloses nothing: it lies in one plane");
 
     const double scale = z_scale_for_aspect(complex_);
-    const bool wants_refinement = options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3;
+    const bool wants_refinement =
+        options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 || options_.inner_growth;
     std::string before;  // what was tried and failed, for the message
     bool refinement_pays = wants_refinement;
     if (wants_refinement) {
@@ -254,11 +258,28 @@ class Filler {
       // A volume bound alone refines too: TetGen's own ratio of 2, no dihedral bound.
       s += "q" + number(options_.radius_edge.value_or(2));
       if (options_.dihedral_deg) s += "/" + number(*options_.dihedral_deg);
+      if (sized(call)) s += "m";
       if (options_.max_volume_mm3) s += "a" + number(*options_.max_volume_mm3 * call.z_scale);
     }
     // Y keeps the surface; M keeps TetGen from merging points closer than its tolerance, which would make
     // features thinner than 1e-8 of the box intersect themselves.
     return s + "YM" + call.tolerance;
+  }
+
+  bool sized(const Call& call) const { return call.refine && options_.inner_growth && call.z_scale == 1; }
+
+  /// The edge length wanted at each point, for tets inside: the mean of the surface's edges there, grown. TetGen's
+  /// edges come out longer than asked by the factor.
+  std::vector<double> sizes() const {
+    constexpr double kTetGensOwn = 0.85;
+    std::vector<double> sum(input_.points.size(), 0), count(input_.points.size(), 0);
+    for (std::size_t i = 0; i < input_.corners.size(); ++i) {
+      const std::int32_t a = input_.corners[i], b = input_.corners[i % 3 == 2 ? i - 2 : i + 1];
+      const double length = norm(input_.points[b] - input_.points[a]);
+      for (const std::int32_t v : {a, b}) sum[v] += length, count[v] += 1;
+    }
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] *= kTetGensOwn * *options_.inner_growth / count[p];
+    return sum;
   }
 
   Reply call_worker(const std::string& switches, const Call& call, Clock::time_point deadline) {
@@ -268,7 +289,9 @@ class Filler {
       moved = input_.points;
       for (Vec3& p : moved) p = turned({p.x, p.y, p.z * call.z_scale}, call.turns);
     }
-    return worker::run(program_, {switches, as_is ? &input_.points : &moved, &input_.corners}, deadline);
+    std::vector<double> edges;
+    if (sized(call)) edges = sizes();
+    return worker::run(program_, {switches, as_is ? &input_.points : &moved, edges.empty() ? nullptr : &edges, &input_.corners}, deadline);
   }
 
   FillResult attempt(const Call& call, Clock::time_point deadline) {
@@ -324,6 +347,16 @@ class Filler {
     }
     if (mesh.tets.empty()) return failure(Status::empty, name + " left no tetrahedron of any label");
     drop_unused(mesh);
+    std::string improved;
+    if (options_.improve_deg) {
+      const std::size_t before = mesh.tets.size();
+      volume::ImproveOptions improve;
+      improve.goal_deg = *options_.improve_deg;
+      volume::ImproveCounts counts;
+      finding = volume::label_tets(volume::improve_tets(mesh, complex_.points.size(), improve, counts), mesh);
+      if (!finding.message.empty()) fail_internal("the improved tets are invalid: " + finding.message, name);
+      improved = ", improved from " + std::to_string(before);
+    }
 
     double worst = 0;
     const auto expected = volume::surface_volumes({mesh.points, mesh.faces});
@@ -347,7 +380,7 @@ class Filler {
     FillResult result;
     result.status = Status::verified;
     const std::size_t added = mesh.points.size() - complex_.points.size();
-    result.message = name + ": " + std::to_string(mesh.tets.size()) + " tetrahedra, " +
+    result.message = name + ": " + std::to_string(mesh.tets.size()) + " tetrahedra" + improved + ", " +
                      std::to_string(added) + " points added inside";
     if (worst > 1e-9) result.message += ", volumes within " + number(worst) + " of the surface's";
     result.mesh = std::move(mesh);
@@ -427,6 +460,23 @@ class Filler {
 };
 
 }  // namespace
+
+double estimate_tets(const InterfaceComplex& complex, const FillOptions& options) {
+  double edges = 0, volume = 0, sides = 0;
+  for (const InterfaceTriangle& t : complex.triangles) {
+    if (t.below == t.above) continue;
+    const Vec3 &a = complex.points[t.v[0]], &b = complex.points[t.v[1]], &c = complex.points[t.v[2]];
+    const double own = (t.below != 0) + (t.above != 0);
+    sides += own;
+    edges += own * (norm(b - a) + norm(c - b) + norm(a - c)) / 3;
+  }
+  for (const auto& [label, v] : volume::surface_volumes(complex)) volume += std::abs(v.mm3);
+  if (sides == 0) return 0;
+  const double edge = edges / sides * options.inner_growth.value_or(4);
+  double tets = 1.5 * sides + volume / (0.12 * edge * edge * edge);
+  if (options.max_volume_mm3) tets = std::max(tets, 1.5 * volume / *options.max_volume_mm3);
+  return tets;
+}
 
 FillResult fill_volume(const InterfaceComplex& complex, const FillOptions& options) {
   check_input(complex, options);

@@ -12,15 +12,20 @@ namespace stackmesh {
 /// How the complex is filled.
 struct FillOptions {
   std::optional<double> max_volume_mm3;  ///< largest tetrahedron, mm3; unset: no bound (graded)
-  std::optional<double> radius_edge;  ///< largest circumradius / shortest edge; a target. Unset together with
-                                      ///< dihedral_deg and max_volume_mm3: no refinement
-  std::optional<double> dihedral_deg;  ///< smallest dihedral angle, degrees; a target
+  std::optional<double> radius_edge;  ///< largest circumradius / shortest edge, before improvement; a target. Unset
+                                      ///< together with dihedral_deg, inner_growth and max_volume_mm3: no refinement
+  std::optional<double> dihedral_deg;  ///< smallest dihedral angle that TetGen refines for, degrees; a target
+  std::optional<double> inner_growth;  ///< edges inside are about this times those of the nearby surface; a target
+  std::optional<double> improve_deg;   ///< then tets with a dihedral angle below it are improved; unset: as TetGen gives them
   double timeout_s = 600;              ///< of all worker runs together, seconds
   bool known_sound = false;            ///< the complex was shown to have no intersections: after a refusal TetGen
                                        ///< is not asked for them (that search is slow)
   std::string worker_path;             ///< program that answers the worker call; empty: this very program
   std::vector<std::string> worker_args = {"--tetgen-worker"};
 };
+
+/// About how many tets fill_volume() would make, from the areas of the surface and the volumes of the labels.
+double estimate_tets(const InterfaceComplex& complex, const FillOptions& options);
 
 /// What came of it. Only `verified` carries a mesh.
 struct FillResult {
@@ -42,7 +47,7 @@ struct FillResult {
 
 /// Fills every label of a closed complex with tetrahedra that keep all of its triangles; the background is
 /// left out. TetGen (Si 2015) does it in a worker process with a timeout, boundary preserved (-pY). What
-/// comes back is not believed: each tet's label is flooded from the facets' (below, above), and the volumes
+/// comes back is improved if that is asked for, and not believed: each tet's label is flooded from the facets' (below, above), and the volumes
 /// per label compared.
 ///
 /// A refinement that fails falls back to plain filling, and a refusal is tried again with smaller tolerances

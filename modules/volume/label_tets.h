@@ -16,6 +16,9 @@ struct Finding {
   bool of_input = false;                // the complex itself is at fault: another call of TetGen is no use
 };
 
+/// The sign of det(b-a, c-a, d-a), exact.
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /// Is every label's surface closed, and no triangle degenerate or repeated?
 Finding check_closed(const InterfaceComplex& complex);
 

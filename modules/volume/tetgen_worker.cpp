@@ -111,6 +111,12 @@ bool read_request(std::string& switches, tetgenio& in) {
   in.numberofpoints = static_cast<int>(header.points);
   in.pointlist = new REAL[3 * header.points];
   if (!read_all(STDIN_FILENO, in.pointlist, 3 * header.points * sizeof(REAL))) return false;
+  if (header.sizes > 0) {
+    if (header.sizes != header.points) return false;
+    in.numberofpointmtrs = 1;
+    in.pointmtrlist = new REAL[header.sizes];
+    if (!read_all(STDIN_FILENO, in.pointmtrlist, header.sizes * sizeof(REAL))) return false;
+  }
   const std::size_t count = header.triangles;
   auto* corners = new int[3 * count];
   if (!read_all(STDIN_FILENO, corners, 3 * count * sizeof(int))) return false;

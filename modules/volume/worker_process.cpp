@@ -141,9 +141,11 @@ class Exchange {
   Exchange(int channel, const Request& request, Reply& reply) : channel_(channel), reply_(reply) {
     header_out_.switches_bytes = request.switches.size();
     header_out_.points = request.points->size();
+    header_out_.sizes = request.sizes ? request.sizes->size() : 0;
     header_out_.triangles = request.corners->size() / 3;
     out_ = {piece(&header_out_, sizeof header_out_), piece(request.switches.data(), request.switches.size()),
             piece(request.points->data(), request.points->size() * sizeof(Vec3)),
+            piece(request.sizes ? request.sizes->data() : nullptr, header_out_.sizes * sizeof(double)),
             piece(request.corners->data(), request.corners->size() * sizeof(std::int32_t))};
     in_ = {piece(&hello_, sizeof hello_), piece(&header_, sizeof header_)};
   }

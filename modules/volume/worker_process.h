@@ -18,6 +18,7 @@ struct Program {
 struct Request {
   std::string switches;
   const std::vector<Vec3>* points = nullptr;
+  const std::vector<double>* sizes = nullptr;          // edge length wanted at each point (-m); null: none
   const std::vector<std::int32_t>* corners = nullptr;  // three a triangle
 };
 

@@ -4,16 +4,16 @@
 namespace stackmesh::worker {
 
 // One request, one answer, in the machine's own byte order: both ends are the same program.
-//   request: RequestHeader, switches, points (3 doubles each), triangles (3 int32 each)
+//   request: RequestHeader, switches, points (3 doubles each), sizes (a double each), triangles (3 int32 each)
 //   answer:  hello (uint64, at once), AnswerHeader, text, points that were added (3 doubles each),
 //            tets (4 int32 each), neighbours (4 int32 each, opposite the corner, -1 outside), faces (int32
 //            each)
-constexpr std::uint64_t kHello = 0x314b52574d545331;  // "1STMWRK1"
+constexpr std::uint64_t kHello = 0x324b52574d545331;  // "1STMWRK2"
 constexpr char kGuardVariable[] = "STACKMESH_TETGEN_WORKER";
 
 struct RequestHeader {
   std::uint64_t magic = kHello;
-  std::uint64_t switches_bytes = 0, points = 0, triangles = 0;
+  std::uint64_t switches_bytes = 0, points = 0, sizes = 0, triangles = 0;
 };
 
 enum Outcome : std::uint32_t {

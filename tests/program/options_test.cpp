@@ -437,6 +437,10 @@ TEST_F(Options, OrderTwoWritesTenNodeTetsThatOthersRead) {
   EXPECT_EQ(read.code, 0) << read.out;
 }
 
+TEST_F(Options, TenMillionTetrahedraAreAskedAbout) {
+  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--max-volume", "1e-6"}, {"million tetrahedra", "--yes"});
+}
+
 TEST_F(Options, OrderTwoIsRefusedForMedit) {
   fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.mesh"), "--order", "2"}, {"Medit", "a.mesh"});
 }

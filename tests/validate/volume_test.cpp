@@ -56,6 +56,32 @@ TEST(CheckVolume, NearlyFlatTetHasItsSmallDihedral) {
   EXPECT_GT(c.dihedral_max_deg, 160);
 }
 
+TEST(CheckVolume, HistogramCountsEveryDihedral) {
+  const VolumeCheck corner = check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}));
+  EXPECT_EQ(corner.dihedral_histogram[54 / 5], 3u);  // 54.7
+  EXPECT_EQ(corner.dihedral_histogram[17] + corner.dihedral_histogram[18], 3u);  // 90
+  std::size_t sum = 0;
+  for (const std::size_t n : check_volume(two_tets()).dihedral_histogram) sum += n;
+  EXPECT_EQ(sum, 12u);
+}
+
+TEST(CheckVolume, NarrowWedgesOfTheSurfaceAreListedApart) {
+  // Two tets side by side in a wedge of 8 degrees along z, split into 4 and 4; then the lower sheet is no surface.
+  const double a = 4 * std::acos(-1.0) / 180;
+  TetMesh m;
+  m.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {std::cos(a), std::sin(a), 0.5}, {std::cos(2 * a), std::sin(2 * a), 0.5}};
+  m.tets = {{0, 2, 3, 1}, {0, 3, 4, 1}};
+  m.labels = {1, 1};
+  m.faces = {{{0, 1, 2}, 1, 0}, {{0, 4, 1}, 1, 0}, {{0, 2, 3}, 0, 1}, {{0, 3, 4}, 0, 1}, {{1, 2, 3}, 1, 0}, {{1, 3, 4}, 1, 0}};
+  VolumeCheck c = check_volume(m);
+  EXPECT_EQ(c.dihedral_below_10, 2u);
+  EXPECT_EQ(c.in_narrow_wedges, 2u);
+  m.points[4] = {std::cos(5 * a), std::sin(5 * a), 0.5};  // 20 degrees in all: 4 and 16 could be 10 and 10
+  c = check_volume(m);
+  EXPECT_EQ(c.dihedral_below_10, 1u);
+  EXPECT_EQ(c.in_narrow_wedges, 0u);
+}
+
 TEST(CheckVolume, FirstPercentileIsOfTheSmallestDihedralPerTet) {
   TetMesh m;
   for (int i = 0; i < 200; ++i) {

@@ -1,0 +1,276 @@
+#include "volume/improve_moves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/label_tets.h"
+#include "volume/tet_quality.h"
+
+namespace stackmesh::volume {
+namespace {
+
+using Corners = ImproveMesh::Corners;
+
+constexpr double kGain = 1e-3;  // what a change must gain at least, relative
+constexpr std::size_t kLongestRing = 9, kLargestCavity = 40;
+
+/// Corner `slot` first, orientation kept.
+Corners first(const Corners& v, int slot) {
+  switch (slot) {
+    case 0: return v;
+    case 1: return {v[1], v[0], v[3], v[2]};
+    case 2: return {v[2], v[3], v[0], v[1]};
+    default: return {v[3], v[2], v[1], v[0]};
+  }
+}
+
+/// The point nearest to the origin of the convex hull of `points` (Gilbert's method): a way along which all of the
+/// functions grow that these are the gradients of.
+Vec3 nearest_to_origin(const std::vector<Vec3>& points) {
+  Vec3 x = points.front();
+  for (int i = 0; i < 30; ++i) {
+    const Vec3* least = &points.front();
+    for (const Vec3& p : points)
+      if (dot(p, x) < dot(*least, x)) least = &p;
+    const double gap = dot(x, x) - dot(*least, x);
+    if (gap <= 1e-3 * dot(x, x)) break;
+    const Vec3 d = *least - x;
+    x = x + std::min(1.0, gap / dot(d, d)) * d;
+  }
+  return x;
+}
+
+}  // namespace
+
+double ImproveMoves::worst_of(const std::vector<std::int32_t>& tets) const {
+  double worst = 2;
+  for (const std::int32_t t : tets) worst = std::min(worst, m_.quality[t]);
+  return worst;
+}
+
+/// The worst tet of a fan whose point is at p; not looked for further once below `stop`.
+double ImproveMoves::fan_quality(const std::vector<Corners>& fan, const Vec3& p, double stop) const {
+  double worst = 2;
+  for (const Corners& v : fan) {
+    worst = std::min(worst, tet_quality(p, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]));
+    if (worst <= stop) return worst;
+  }
+  return worst;
+}
+
+Vec3 ImproveMoves::gradient(const Corners& v, const Vec3& p, double h) const {
+  const auto at = [&](double x, double y, double z) {
+    return tet_quality({p.x + x, p.y + y, p.z + z}, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]);
+  };
+  return {(at(h, 0, 0) - at(-h, 0, 0)) / (2 * h), (at(0, h, 0) - at(0, -h, 0)) / (2 * h), (at(0, 0, h) - at(0, 0, -h)) / (2 * h)};
+}
+
+/// Climbs from p along the common gradient of the worst tets (freitag1997). `quality` is that of the fan at p, and then
+/// of the place returned.
+Vec3 ImproveMoves::best_place(const std::vector<Corners>& fan, Vec3 p, double& quality, double enough) {
+  double size = 1e300;
+  for (const Corners& v : fan)
+    for (int i = 1; i < 4; ++i) size = std::min(size, norm(m_.points[v[i]] - p));
+  double reach = 0.3 * size;
+  for (int round = 0; round < 12 && quality < enough && reach > 1e-3 * size; ++round) {
+    gradients_.clear();
+    const double close = quality + std::max(0.02, 0.1 * std::abs(quality));
+    for (const Corners& v : fan)
+      if (tet_quality(p, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]) < close) gradients_.push_back(gradient(v, p, 1e-5 * size));
+    if (gradients_.empty()) break;
+    const Vec3 way = nearest_to_origin(gradients_);
+    const double steep = norm(way);
+    if (steep * size < 1e-4) break;
+    bool moved = false;
+    for (int half = 0; half < 5; ++half, reach /= 2) {
+      const Vec3 to = p + (reach / steep) * way;
+      const double q = fan_quality(fan, to, quality);
+      if (q <= quality + 1e-2 * kGain) continue;
+      p = to, quality = q;
+      moved = true;
+      break;
+    }
+    if (!moved) break;
+    reach *= 1.5;
+  }
+  return p;
+}
+
+bool ImproveMoves::smooth(std::int32_t vertex, double enough) {
+  if (!m_.movable[vertex]) return false;
+  m_.star(vertex, around_);
+  if (around_.empty()) return false;
+  fan_.clear();
+  for (const std::int32_t t : around_) fan_.push_back(first(m_.tets[t].v, m_.tets[t].slot(vertex)));
+  const double before = worst_of(around_);
+  double after = before;
+  const Vec3 from = m_.points[vertex], to = best_place(fan_, from, after, enough);
+  if (after <= before + kGain * std::abs(before)) return false;
+  for (const Corners& v : fan_)
+    if (orientation(to, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]) <= 0) return false;
+  m_.points[vertex] = to;
+  for (const std::int32_t t : around_) m_.quality[t] = m_.quality_of(m_.tets[t].v);
+  return true;
+}
+
+bool ImproveMoves::remove_edge(std::int32_t t) {
+  const Corners v = m_.tets[t].v;
+  static constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  for (const auto& e : kEdges) {
+    const std::int32_t a = v[e[0]], b = v[e[1]];
+    if (!m_.ring(t, a, b, kLongestRing, around_, ring_)) continue;
+    const int n = static_cast<int>(ring_.size());
+    const double before = worst_of(around_) * (1 + kGain);
+    // The best triangulation of the ring (klincsek1980): best[i][j] of the polygon i .. j.
+    double best[kLongestRing][kLongestRing];
+    int middle[kLongestRing][kLongestRing];
+    for (int span = 1; span < n; ++span)
+      for (int i = 0; i + span < n; ++i) {
+        const int j = i + span;
+        best[i][j] = span == 1 ? 2 : -1;
+        middle[i][j] = -1;
+        for (int k = i + 1; k < j; ++k) {
+          double q = std::min(best[i][k], best[k][j]);
+          if (q <= before || q <= best[i][j]) continue;
+          q = std::min(q, m_.quality_of({ring_[i], ring_[k], ring_[j], b}));
+          if (q <= before || q <= best[i][j]) continue;
+          q = std::min(q, m_.quality_of({ring_[k], ring_[i], ring_[j], a}));
+          if (q > before && q > best[i][j]) best[i][j] = q, middle[i][j] = k;
+        }
+      }
+    if (best[0][n - 1] <= before) continue;
+    fresh_.clear();
+    int stack[2 * kLongestRing][2], top = 0;
+    stack[top][0] = 0, stack[top++][1] = n - 1;
+    while (top > 0) {
+      --top;
+      const int i = stack[top][0], j = stack[top][1];
+      if (j - i < 2) continue;
+      const int k = middle[i][j];
+      fresh_.push_back({ring_[i], ring_[k], ring_[j], b});
+      fresh_.push_back({ring_[k], ring_[i], ring_[j], a});
+      stack[top][0] = i, stack[top++][1] = k;
+      stack[top][0] = k, stack[top++][1] = j;
+    }
+    if (m_.replace(around_, fresh_)) return true;
+  }
+  return false;
+}
+
+bool ImproveMoves::remove_face(std::int32_t t) {
+  for (int i = 0; i < 4; ++i) {
+    const std::int32_t n = m_.tets[t].n[i];
+    if (n < 0) continue;
+    const Corners v = first(m_.tets[t].v, i);  // v[0] above the face v[1] v[2] v[3]
+    std::int32_t e = -1;
+    for (const std::int32_t u : m_.tets[n].v)
+      if (u != v[1] && u != v[2] && u != v[3]) e = u;
+    const double before = std::min(m_.quality[t], m_.quality[n]) * (1 + kGain);
+    fresh_.clear();
+    double q = 2;
+    for (int k = 1; k <= 3 && q > before; ++k) {
+      const Corners fresh = {v[0], e, v[k], v[k % 3 + 1]};
+      q = std::min(q, m_.quality_of(fresh));
+      fresh_.push_back(fresh);
+    }
+    if (q <= before) continue;
+    around_ = {t, n};
+    if (m_.replace(around_, fresh_)) return true;
+  }
+  return false;
+}
+
+bool ImproveMoves::collapse(std::int32_t t) {
+  const Corners v = m_.tets[t].v;
+  for (const std::int32_t gone : v) {
+    if (!m_.movable[gone]) continue;
+    m_.star(gone, around_);
+    const double before = worst_of(around_) * (1 + kGain);
+    for (const std::int32_t into : v) {
+      if (into == gone) continue;
+      fresh_.clear();
+      double q = 2;
+      for (const std::int32_t s : around_) {
+        if (m_.tets[s].has(into)) continue;
+        Corners c = m_.tets[s].v;
+        c[m_.tets[s].slot(gone)] = into;
+        q = std::min(q, m_.quality_of(c));
+        if (q <= before) break;
+        fresh_.push_back(c);
+      }
+      if (q <= before || fresh_.empty()) continue;
+      if (m_.replace(around_, fresh_)) return true;
+    }
+  }
+  return false;
+}
+
+bool ImproveMoves::try_insert(std::int32_t t, const Vec3& start, double enough) {
+  // The cavity grows through the faces that the point sees worst, as long as that helps.
+  cavity_ = {t};
+  m_.begin_marks();
+  m_.mark(t);
+  Vec3 p = start;
+  struct Side {
+    Corners v;  // v[0] is the cavity's corner, to be replaced by the point
+    std::int32_t beyond;
+    double quality;
+  };
+  std::vector<Side> sides;
+  const auto add_sides = [&](std::int32_t tet) {
+    for (int i = 0; i < 4; ++i) {
+      const std::int32_t n = m_.tets[tet].n[i];
+      if (n >= 0 && m_.marked(n)) continue;
+      const Corners v = first(m_.tets[tet].v, i);
+      sides.push_back({v, n, tet_quality(p, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]])});
+    }
+  };
+  add_sides(t);
+  double old_worst = m_.quality[t];
+  while (cavity_.size() < kLargestCavity) {
+    const auto worst = std::min_element(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.quality < b.quality; });
+    if (worst->quality > enough || worst->beyond < 0) break;
+    // A face beyond which the tet is good enough is better left.
+    if (worst->quality > old_worst && m_.quality[worst->beyond] > worst->quality && worst->quality > 0.5 * enough && cavity_.size() > 12) break;
+    const std::int32_t next = worst->beyond;
+    m_.mark(next);
+    cavity_.push_back(next);
+    old_worst = std::min(old_worst, m_.quality[next]);
+    sides.erase(std::remove_if(sides.begin(), sides.end(), [&](const Side& s) { return s.beyond == next; }), sides.end());
+    add_sides(next);
+  }
+  fan_.clear();
+  double q = 2;
+  for (const Side& s : sides) {
+    q = std::min(q, s.quality);
+    fan_.push_back(s.v);
+  }
+  if (q <= -0.5) return false;
+  p = best_place(fan_, p, q, enough);
+  if (q <= old_worst * (1 + 10 * kGain) + 1e-3) return false;
+  const std::int32_t fresh_point = m_.add_point(p);
+  fresh_.clear();
+  for (const Corners& v : fan_) fresh_.push_back({fresh_point, v[1], v[2], v[3]});
+  if (m_.replace(cavity_, fresh_)) return true;
+  m_.drop_last_point();
+  return false;
+}
+
+bool ImproveMoves::insert(std::int32_t t, double enough) {
+  const Corners v = m_.tets[t].v;
+  Vec3 centre;
+  for (const std::int32_t u : v) centre = centre + 0.25 * m_.points[u];
+  if (try_insert(t, centre, enough)) return true;
+  // A sliver has two long edges opposite each other: the middle between their middles is its centre; the middle of the
+  // longest edge opens a cap.
+  double longest = 0;
+  Vec3 middle;
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j) {
+      const double length = norm(m_.points[v[j]] - m_.points[v[i]]);
+      if (length > longest) longest = length, middle = 0.5 * (m_.points[v[i]] + m_.points[v[j]]);
+    }
+  return try_insert(t, 0.7 * middle + 0.3 * centre, enough);
+}
+
+}  // namespace stackmesh::volume

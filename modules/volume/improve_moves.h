@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "volume/improve_mesh.h"
+
+namespace stackmesh::volume {
+
+/// The changes that may mend a tet. Each is made only if the worst tet afterwards is better than the worst of those
+/// it replaces, so that a mesh never gets worse.
+class ImproveMoves {
+ public:
+  explicit ImproveMoves(ImproveMesh& mesh) : m_(mesh) {}
+
+  /// Moves a point to where the worst tet around it is best; tets better than `enough` do not count. True when it moved.
+  bool smooth(std::int32_t vertex, double enough);
+  /// Replaces the tets around an edge of t by ones without it.
+  bool remove_edge(std::int32_t t);
+  /// Replaces two tets by three around a new edge.
+  bool remove_face(std::int32_t t);
+  /// Merges a movable corner of t into another point of the tets around it.
+  bool collapse(std::int32_t t);
+  /// Empties a cavity around t and fills it from a new point.
+  bool insert(std::int32_t t, double enough);
+
+ private:
+  // A fan is the tets of one point, their corner 0.
+  double worst_of(const std::vector<std::int32_t>& tets) const;
+  double fan_quality(const std::vector<ImproveMesh::Corners>& fan, const Vec3& p, double stop) const;
+  Vec3 best_place(const std::vector<ImproveMesh::Corners>& fan, Vec3 p, double& quality, double enough);
+  Vec3 gradient(const ImproveMesh::Corners& tet, const Vec3& p, double h) const;
+  bool try_insert(std::int32_t t, const Vec3& start, double enough);
+
+  ImproveMesh& m_;
+  std::vector<std::int32_t> around_, ring_, cavity_;
+  std::vector<ImproveMesh::Corners> fresh_, fan_;
+  std::vector<Vec3> gradients_;
+};
+
+}  // namespace stackmesh::volume
