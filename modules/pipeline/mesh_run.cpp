@@ -299,13 +299,30 @@ class MeshRun {
     if (wants_fidelity() && input_.volume) judge_fidelity();
     for (const LabelReport& row : report_.labels)
       if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
+    give_verdicts();
+  }
+
+  void give_verdicts() {
+    JudgeInput in;
+    in.surface = &*report_.surface;
+    if (report_.volume) in.volume = &*report_.volume;
+    in.labels = input_.labels;
+    if (!fidelity_.empty()) {
+      in.fidelity = &fidelity_;
+      for (const LabelReport& row : report_.labels) in.input_volume_mm3.push_back(row.input_volume_mm3.value_or(0));
+      const auto& spacing = input_.volume->spacing_mm;
+      in.pixel_mm = pixel_mm_;
+      in.voxel_mm = *std::max_element(spacing.begin(), spacing.end());
+    }
+    report_.verdicts = judge(in, report_.limits);
   }
 
   void judge_fidelity() {
     FidelityOptions options;
     options.threads = o_.threads;
     options.stack_axis = axis_;
-    for (const LabelFidelity& f : check_fidelity(surface_, *input_.volume, options))
+    fidelity_ = check_fidelity(surface_, *input_.volume, options);
+    for (const LabelFidelity& f : fidelity_)
       for (LabelReport& row : report_.labels) {
         if (row.label != f.label) continue;
         row.dice = f.dice;
@@ -436,6 +453,7 @@ class MeshRun {
   std::optional<TetMesh> mesh_;
   HtmlPictures pictures_;
   WorldSpace world_ = WorldSpace::lps;
+  std::vector<LabelFidelity> fidelity_;
   std::vector<std::int32_t> offending_;
   std::string refusal_, mend_, lost_detail_;
 };

@@ -69,6 +69,29 @@ Json label(const LabelReport& l) {
           {"caps", {{"low", l.cap_low}, {"high", l.cap_high}}}};
 }
 
+Json verdict(const Verdict& v) {
+  return {{"id", v.id}, {"title", v.title}, {"status", to_text(v.status)}, {"figure", v.figure}, {"limit", v.limit},
+          {"validity", v.validity}, {"labels", v.labels}, {"explanation", v.explanation}};
+}
+
+Json defect(const Defect& d) {
+  return {{"kind", d.kind}, {"label", d.label}, {"where_mm", {d.where.x, d.where.y, d.where.z}}, {"section", optional(d.section)},
+          {"count", d.count}, {"size_mm", d.size_mm}, {"entity_kind", d.entity_kind}, {"entities", d.entities}, {"text", d.text}};
+}
+
+Json limits(const Limits& l) {
+  return {{"volume_warn_rel", l.volume_warn_rel}, {"volume_fail_rel", l.volume_fail_rel}, {"dice_warn", l.dice_warn}, {"dice_fail", l.dice_fail},
+          {"mean_distance_warn_px", l.mean_distance_warn_px}, {"mean_distance_fail_px", l.mean_distance_fail_px},
+          {"p95_distance_warn_px", l.p95_distance_warn_px}, {"p95_distance_fail_px", l.p95_distance_fail_px},
+          {"max_distance_warn_px", l.max_distance_warn_px}, {"max_distance_fail_px", l.max_distance_fail_px},
+          {"position_warn_px", l.position_warn_px}, {"position_fail_px", l.position_fail_px},
+          {"angle_warn_deg", l.angle_warn_deg}, {"angle_fail_deg", l.angle_fail_deg},
+          {"dihedral_warn_deg", l.dihedral_warn_deg}, {"dihedral_fail_deg", l.dihedral_fail_deg},
+          {"dihedral_max_warn_deg", l.dihedral_max_warn_deg}, {"dihedral_max_fail_deg", l.dihedral_max_fail_deg},
+          {"jacobian_warn", l.jacobian_warn}, {"jacobian_fail", l.jacobian_fail},
+          {"thin_warn_share", l.thin_warn_share}, {"thin_elements", l.thin_elements}, {"small_label_voxels", l.small_label_voxels}};
+}
+
 }  // namespace
 
 std::string to_json(const RunReport& r) {
@@ -78,6 +101,9 @@ std::string to_json(const RunReport& r) {
   for (const StageTime& s : r.stages) stages.push_back({{"name", s.name}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}});
   Json labels = Json::array();
   for (const LabelReport& l : r.labels) labels.push_back(label(l));
+  Json verdicts = Json::array(), defects = Json::array();
+  for (const Verdict& v : r.verdicts) verdicts.push_back(verdict(v));
+  for (const Defect& d : r.defects) defects.push_back(defect(d));
   const bool grid = r.input.dimensions[0] > 0;
   const Json j = {
       {"schema", 1},
@@ -105,6 +131,10 @@ std::string to_json(const RunReport& r) {
       {"surface", surface(r)},
       {"volume", volume(r)},
       {"labels", labels},
+      {"verdict", r.verdicts.empty() ? Json(nullptr) : Json(to_text(overall(r.verdicts)))},
+      {"verdicts", verdicts},
+      {"defects", defects},
+      {"limits", limits(r.limits)},
       {"warnings", r.warnings}};
   // File names need not be valid UTF-8: what is not is replaced.
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -10,6 +10,7 @@
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_volume.h"
+#include "validate/verdict.h"
 
 namespace stackmesh {
 
@@ -60,6 +61,9 @@ struct RunReport {
   std::optional<VolumeCheck> volume;
   std::string closure = "skipped";  ///< verified, failed or skipped
   std::vector<LabelReport> labels;
+  std::vector<Verdict> verdicts;  ///< in the order in which they are read
+  std::vector<Defect> defects;    ///< where it fails
+  Limits limits;                  ///< that the verdicts were made with
   std::vector<std::string> warnings;
 };
 

@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meshio/write_mesh.h"
+#include "model/complex.h"
+#include "model/label_volume.h"
+#include "model/tet_mesh.h"
+
+namespace stackmesh {
+
+/// Where the labels of a mesh file came from.
+enum class LabelSource {
+  none,   ///< nothing in the file: every triangle and tet has label 1
+  sides,  ///< label_below and label_above of each triangle
+  array,  ///< a number per cell (label, material, gmsh:physical ...)
+  sets    ///< element sets or groups; numbers are those the file tells, else they count up
+};
+
+/// A mesh of any program, as its file holds it: mm are not checked, points keep their order (but see
+/// `merged_points`), cells of other kinds than triangles and tets are gone.
+struct MeshFile {
+  std::string path, format;  ///< format: "stl", "ply", "obj", "off", "vtp", "vtk", "vtu", "msh", "inp" or "mesh"
+  std::vector<Vec3> points;
+  /// Surface triangles. Of a file without tets: the normal points from `below` into `above`. Of a file with
+  /// tets: only those that carry both labels; all others are left out, as the tets' faces tell more.
+  std::vector<InterfaceTriangle> triangles;
+  std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on edges 01 12 20 03 13 23; empty: linear
+  std::vector<Label> tet_labels;                     ///< one per tet
+  std::vector<LabelInfo> names;                      ///< of labels the file names, ascending by number
+  LabelSource label_source = LabelSource::none;
+  std::string label_array;                ///< name of the array the labels were read from, "" for none
+  bool numbers_from_names = false;        ///< of sets: some number was only counted up; the name is what counts
+  std::optional<WorldSpace> space;        ///< the frame that the file says it is in
+  std::size_t merged_points = 0;          ///< exactly equal points that were made one (surfaces only)
+  std::size_t dropped_triangles = 0;      ///< triangles that name a point twice (they bound nothing)
+  std::vector<std::string> notes;         ///< what was converted or left out, for a report
+};
+
+struct MeshReadOptions {
+  /// Cell array that holds the labels; empty: the first of label, labels, material, materialid, medit:ref,
+  /// gmsh:physical, region, regionid, cellentityids, part, partid (any letter case, `_` and blanks ignored).
+  std::string label_array;
+};
+
+/// True for .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh, in any letter case.
+bool is_readable_mesh(const std::string& path);
+
+/// Reads triangles and tetrahedra (of 4 or 10 nodes; quads and polygons become triangles, said in `notes`)
+/// from a mesh file of any program; the format is that of the ending. STL: binary and text; PLY: binary and
+/// text; VTP, VTU: text, base64 and raw, appended or not, also zlib-compressed; VTK: legacy 2.0 to 5.1, text and binary; MSH: Gmsh 2.2
+/// and 4.1, text and binary; INP: Abaqus and CalculiX; MESH: Medit text. Memory is bounded by the size of the
+/// file, whatever its header claims. @throws Error(input) in one clear line for anything that cannot be read
+/// or is not a finite number, a mesh without triangles, hexahedra and other cells, labels that are not whole
+/// numbers.
+MeshFile read_mesh(const std::string& path, const MeshReadOptions& options = {});
+
+/// The mesh's tets with their interface triangles: those of the file where it has them, else the faces between
+/// tets of different labels.
+TetMesh tet_mesh_of(const MeshFile& file);
+
+/// The faces between tets of different labels (0 outside), oriented by the tets; a tet whose nodes run against
+/// most of its neighbours' is turned round first.
+std::vector<InterfaceTriangle> faces_of_tets(const TetMesh& mesh);
+
+}  // namespace stackmesh

@@ -1,0 +1,245 @@
+#include "validate/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace stackmesh {
+namespace {
+
+std::string text_of(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::string counted(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
+
+Status above(double value, double warn, double fail) { return value > fail ? Status::fail : value > warn ? Status::warn : Status::pass; }
+Status below(double value, double warn, double fail) { return value < fail ? Status::fail : value < warn ? Status::warn : Status::pass; }
+void worsen(Status& status, Status other) { status = std::max(status, other); }
+
+class Judge {
+ public:
+  Judge(const JudgeInput& input, const Limits& limits) : in_(input), l_(limits) {}
+
+  std::vector<Verdict> run() {
+    if (in_.surface) closed(), intersections();
+    if (in_.volume && in_.volume->tets > 0) orientation(), conforming();
+    if (in_.fidelity && !in_.fidelity->empty()) components(), volume(), fidelity();
+    if (in_.surface) quality();
+    return std::move(verdicts_);
+  }
+
+ private:
+  Verdict& add(const char* id, const char* title, bool validity = false) {
+    Verdict v;
+    v.id = id, v.title = title, v.validity = validity;
+    verdicts_.push_back(std::move(v));
+    return verdicts_.back();
+  }
+
+  std::string name(Label label) const {
+    for (const LabelInfo& i : in_.labels)
+      if (i.number == label && !i.name.empty()) return "label " + std::to_string(label) + " (" + i.name + ")";
+    return "label " + std::to_string(label);
+  }
+
+  void closed() {
+    const SurfaceCheck& s = *in_.surface;
+    Verdict& v = add("closed", "Closed", true);
+    v.figure = counted(s.open_edges, "open edge", "open edges");
+    v.limit = "none allowed";
+    v.status = s.open_edges > 0 ? Status::fail : Status::pass;
+    for (const LabelSurface& label : s.labels)
+      if (!label.closed) v.labels.push_back(label.label);
+    v.explanation = v.labels.empty() ? "Every edge of every label's surface is met from both sides, so each label encloses a volume."
+                                     : "Edges at which a label's surface ends, or its triangles face against each other: " + list(v.labels) + ".";
+  }
+
+  std::string list(const std::vector<Label>& labels) const {
+    std::string text;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (i == 5) return text + " and " + std::to_string(labels.size() - 5) + " more";
+      text += (i ? ", " : "") + name(labels[i]);
+    }
+    return text;
+  }
+
+  void intersections() {
+    const SurfaceCheck& s = *in_.surface;
+    Verdict& v = add("intersections", "Free of intersections", true);
+    const std::size_t pairs = s.self_intersections - s.degenerate_triangles;
+    v.figure = counted(pairs, "crossing pair", "crossing pairs");
+    if (s.degenerate_triangles > 0) v.figure += ", " + counted(s.degenerate_triangles, "triangle without area", "triangles without area");
+    v.limit = "none allowed";
+    v.status = s.self_intersections > 0 ? Status::fail : Status::pass;
+    v.explanation = v.status == Status::pass ? "No two triangles meet but in the corners and edges they share (exact arithmetic)."
+                                             : "Triangles meet where they share no corner or edge, or have no area (exact arithmetic).";
+  }
+
+  void orientation() {
+    Verdict& v = add("orientation", "No inverted tetrahedra", true);
+    v.figure = std::to_string(in_.volume->inverted) + " of " + counted(in_.volume->tets, "tetrahedron", "tetrahedra");
+    v.limit = "none allowed";
+    v.status = in_.volume->inverted > 0 ? Status::fail : Status::pass;
+    v.explanation = v.status == Status::pass ? "Every tetrahedron has a positive volume (exact arithmetic)."
+                                             : "These have no volume or a negative one (exact arithmetic): a solver will stop at them.";
+  }
+
+  void conforming() {
+    Verdict& v = add("conforming", "Conforming", true);
+    v.figure = counted(in_.volume->nonconforming_faces, "face", "faces") + " that do not conform";
+    v.limit = "none allowed";
+    v.status = in_.volume->conforms ? Status::pass : Status::fail;
+    v.explanation = v.status == Status::pass ? "Neighbouring tetrahedra share whole faces, and the faces between labels are the surface's triangles."
+                                             : "Faces shared by more than two tetrahedra, or whose labels differ from the surface's.";
+  }
+
+  const LabelSurface* surface_of(Label label) const {
+    if (in_.surface)
+      for (const LabelSurface& s : in_.surface->labels)
+        if (s.label == label) return &s;
+    return nullptr;
+  }
+
+  void components() {
+    Verdict& v = add("components", "All components there");
+    std::size_t missing = 0, parts = 0;
+    for (const LabelFidelity& f : *in_.fidelity) {
+      missing += f.missing_components;
+      parts += static_cast<std::size_t>(f.input_components);
+      const bool lost = f.missing_components > 0;
+      if (!lost && f.components_match) continue;
+      v.labels.push_back(f.label);
+      worsen(v.status, lost ? Status::fail : Status::warn);
+    }
+    v.figure = missing > 0 ? std::to_string(missing) + " of " + counted(parts, "component", "components") + " missing"
+               : v.labels.empty() ? counted(parts, "component", "components") + ", one to one"
+                                  : "none missing; " + counted(v.labels.size(), "label does", "labels do") + " not match one to one";
+    v.limit = "none missing; one to one, else a warning";
+    v.explanation = v.labels.empty() ? "Every part of a label in the slices (voxels joined over faces) is one part of the mesh."
+                                     : "Parts are lost, joined, split or added in " + list(v.labels) + ".";
+  }
+
+  bool is_small(const LabelFidelity& f) const { return f.input_voxels < l_.small_label_voxels; }
+
+  /// Sorts the labels by how far they are off, and caps small ones at a warning.
+  struct Row {
+    Label label;
+    Status status;
+    double badness;
+  };
+  void take(Verdict& v, std::vector<Row>& rows) {
+    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.badness > b.badness; });
+    for (const Row& r : rows) {
+      worsen(v.status, r.status);
+      if (r.status != Status::pass) v.labels.push_back(r.label);
+    }
+  }
+
+  void volume() {
+    Verdict& v = add("volume", "Volume kept");
+    std::vector<Row> rows;
+    double worst = 0, sum_mesh = 0, sum_input = 0;
+    Label worst_label = 0;
+    for (std::size_t i = 0; i < in_.labels.size() && i < in_.input_volume_mm3.size(); ++i) {
+      const LabelSurface* s = surface_of(in_.labels[i].number);
+      const double input = in_.input_volume_mm3[i], mesh = s ? s->volume_mm3 : 0;
+      if (!(input > 0)) continue;
+      sum_mesh += mesh, sum_input += input;
+      const double error = mesh / input - 1;
+      if (worst_label == 0 || std::abs(error) > std::abs(worst)) worst = error, worst_label = in_.labels[i].number;
+      Status status = above(std::abs(error), l_.volume_warn_rel, l_.volume_fail_rel);
+      for (const LabelFidelity& f : *in_.fidelity)
+        if (f.label == in_.labels[i].number && is_small(f)) status = std::min(status, Status::warn);
+      rows.push_back({in_.labels[i].number, status, std::abs(error)});
+    }
+    take(v, rows);
+    const double total = sum_input > 0 ? sum_mesh / sum_input - 1 : 0;
+    v.figure = rows.size() == 1 ? text_of("%+.2f %%", 100 * worst) : text_of("%+.2f %% in all", 100 * total) + text_of("; worst %+.2f %%, ", 100 * worst) + name(worst_label);
+    v.limit = text_of("warn above %g %%", 100 * l_.volume_warn_rel) + text_of(", fail above %g %%", 100 * l_.volume_fail_rel);
+    v.explanation = "Volume enclosed by each label's surface against that of its voxels." + blame(v.labels);
+  }
+
+  std::string blame(const std::vector<Label>& labels) const { return labels.empty() ? "" : " Outside: " + list(labels) + "."; }
+
+  void fidelity() {
+    Verdict& v = add("fidelity", "Fidelity");
+    std::vector<Row> rows;
+    double dice = 2, mean = 0, p95 = 0, most = 0;
+    bool measured = false;
+    for (const LabelFidelity& f : *in_.fidelity) {
+      if (f.input_voxels == 0) continue;
+      Status status = below(std::isnan(f.dice) ? 0 : f.dice, l_.dice_warn, l_.dice_fail);
+      double badness = 1 - (std::isnan(f.dice) ? 0 : f.dice);
+      dice = std::min(dice, std::isnan(f.dice) ? 0 : f.dice);
+      const auto distance = [&](const Distance& d, double unit) {
+        if (std::isnan(d.mean) || !(unit > 0)) return;
+        measured = true;
+        mean = std::max(mean, d.mean / unit), p95 = std::max(p95, d.p95 / unit), most = std::max(most, d.max / unit);
+        worsen(status, above(d.mean / unit, l_.mean_distance_warn_px, l_.mean_distance_fail_px));
+        worsen(status, above(d.p95 / unit, l_.p95_distance_warn_px, l_.p95_distance_fail_px));
+        worsen(status, above(d.max / unit, l_.max_distance_warn_px, l_.max_distance_fail_px));
+        badness += d.mean / unit;
+      };
+      distance(f.distance_mm, in_.pixel_mm);
+      distance(f.reverse_distance_mm, in_.voxel_mm);
+      if (is_small(f)) status = std::min(status, Status::warn);
+      rows.push_back({f.label, status, badness});
+    }
+    take(v, rows);
+    v.figure = text_of("Dice %.4f", dice > 1 ? 0 : dice);
+    if (measured) v.figure += text_of(", distance mean %.2f", mean) + text_of(", 95 %% %.2f", p95) + text_of(", largest %.2f px", most);
+    v.limit = text_of("Dice %g", l_.dice_warn) + text_of(" (fail %g)", l_.dice_fail) + text_of("; mean %g", l_.mean_distance_warn_px) +
+              text_of(" (%g)", l_.mean_distance_fail_px) + text_of(", 95 %% %g", l_.p95_distance_warn_px) + text_of(" (%g)", l_.p95_distance_fail_px) +
+              text_of(", largest %g", l_.max_distance_warn_px) + text_of(" (%g) px", l_.max_distance_fail_px);
+    v.explanation = "Worst label: overlap of voxel centres, and distances between the mesh and the voxels' boundary both ways, in pixels" +
+                    text_of(" (of %.3g mm; mesh to labels", in_.pixel_mm) + text_of(": voxels of %.3g mm).", in_.voxel_mm) + blame(v.labels);
+  }
+
+  void quality() {
+    const SurfaceCheck& s = *in_.surface;
+    Verdict& v = add("quality", "Element quality");
+    v.status = below(s.angle_min_deg, l_.angle_warn_deg, l_.angle_fail_deg);
+    v.figure = text_of("smallest angle %.2f", s.angle_min_deg) + text_of(" (1 %%: %.1f) degrees", s.angle_p1_deg);
+    v.limit = text_of("angle %g", l_.angle_warn_deg) + text_of(" (fail %g)", l_.angle_fail_deg);
+    v.explanation = "Smallest angle of the surface's triangles";
+    if (in_.volume && in_.volume->tets > 0) {
+      const VolumeCheck& t = *in_.volume;
+      worsen(v.status, below(t.dihedral_min_deg, l_.dihedral_warn_deg, l_.dihedral_fail_deg));
+      worsen(v.status, above(t.dihedral_max_deg, l_.dihedral_max_warn_deg, l_.dihedral_max_fail_deg));
+      worsen(v.status, below(t.scaled_jacobian_min, l_.jacobian_warn, l_.jacobian_fail));
+      v.figure += text_of("; dihedrals %.2f", t.dihedral_min_deg) + text_of(" to %.2f", t.dihedral_max_deg) + text_of("; scaled Jacobian %.3f", t.scaled_jacobian_min);
+      v.limit += text_of("; dihedral %g", l_.dihedral_warn_deg) + text_of(" (%g)", l_.dihedral_fail_deg) + text_of(" to %g", l_.dihedral_max_warn_deg) +
+                 text_of(" (%g)", l_.dihedral_max_fail_deg) + text_of("; Jacobian %g", l_.jacobian_warn) + text_of(" (%g)", l_.jacobian_fail);
+      v.explanation += ", smallest and largest dihedral angle and smallest scaled Jacobian of the tetrahedra";
+    }
+    v.explanation += ".";
+  }
+
+  const JudgeInput& in_;
+  const Limits& l_;
+  std::vector<Verdict> verdicts_;
+};
+
+}  // namespace
+
+const char* to_text(Status status) { return status == Status::pass ? "pass" : status == Status::warn ? "warn" : "fail"; }
+
+std::vector<Verdict> judge(const JudgeInput& input, const Limits& limits) { return Judge(input, limits).run(); }
+
+Status overall(const std::vector<Verdict>& verdicts) {
+  Status worst = Status::pass;
+  for (const Verdict& v : verdicts) worst = std::max(worst, v.status);
+  return worst;
+}
+
+int exit_code(const std::vector<Verdict>& verdicts) {
+  int code = 0;
+  for (const Verdict& v : verdicts)
+    if (v.status == Status::fail) code = v.validity || code == 4 ? 4 : 6;
+  return code;
+}
+
+}  // namespace stackmesh
