@@ -9,5 +9,6 @@ void add_mesh_command(CLI::App& program);
 void add_surface_command(CLI::App& program);
 void add_contours_command(CLI::App& program);
 void add_info_command(CLI::App& program);
+void add_validate_command(CLI::App& program);
 
 }  // namespace stackmesh::app

@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   stackmesh::app::add_surface_command(program);
   stackmesh::app::add_contours_command(program);
   stackmesh::app::add_info_command(program);
+  stackmesh::app::add_validate_command(program);
   std::vector<std::string> arguments(argv + 1, argv + argc);
   if (arguments == std::vector<std::string>{"--xml"}) {
     std::fputs(stackmesh::app::slicer_description().c_str(), stdout);

@@ -11,9 +11,9 @@ add_custom_command(OUTPUT ${page_cpp}
   DEPENDS ${page_paths} ${CMAKE_CURRENT_SOURCE_DIR}/report/page/embed.cmake
   COMMENT "Embedding the report page" VERBATIM)
 stackmesh_module(report
-  SOURCES run_report.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
+  SOURCES run_report.cpp comparison.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
           histograms.cpp worst_places.cpp label_colours.cpp packed.cpp
-  HEADERS run_report.h html_report.h
+  HEADERS run_report.h comparison.h html_report.h
   USES base model validate
   PRIVATE nlohmann_json::nlohmann_json ZLIB::ZLIB)
 target_sources(stackmesh_report PRIVATE ${page_cpp})

@@ -1,6 +1,12 @@
 #include "report/run_report.h"
 
+#include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "base/error.h"
+#include "report/comparison.h"
 
 namespace stackmesh {
 namespace {
@@ -66,7 +72,14 @@ Json label(const LabelReport& l) {
           {"dice", optional(l.dice)},
           {"distance_mm", distance(l.distance_mm)},
           {"reverse_distance_mm", distance(l.reverse_distance_mm)},
-          {"caps", {{"low", l.cap_low}, {"high", l.cap_high}}}};
+          {"caps", {{"low", l.cap_low}, {"high", l.cap_high}}},
+          {"genus", optional(l.genus)},
+          {"surface_area_mm2", l.surface_area_mm2},
+          {"angle_min_deg", l.angle_min_deg},
+          {"dihedral_min_deg", optional(l.dihedral_min_deg)},
+          {"dihedral_max_deg", optional(l.dihedral_max_deg)},
+          {"thin_share", optional(l.thin_share)},
+          {"thickness_p5_mm", optional(l.thickness_p5_mm)}};
 }
 
 Json verdict(const Verdict& v) {
@@ -79,22 +92,48 @@ Json defect(const Defect& d) {
           {"count", d.count}, {"size_mm", d.size_mm}, {"entity_kind", d.entity_kind}, {"entities", d.entities}, {"text", d.text}};
 }
 
+/// Every limit by its name.
+template <class L, class Visit>
+void each_limit(L& l, Visit visit) {
+  visit("volume_warn_rel", l.volume_warn_rel), visit("volume_fail_rel", l.volume_fail_rel);
+  visit("dice_warn", l.dice_warn), visit("dice_fail", l.dice_fail);
+  visit("mean_distance_warn_px", l.mean_distance_warn_px), visit("mean_distance_fail_px", l.mean_distance_fail_px);
+  visit("p95_distance_warn_px", l.p95_distance_warn_px), visit("p95_distance_fail_px", l.p95_distance_fail_px);
+  visit("max_distance_warn_px", l.max_distance_warn_px), visit("max_distance_fail_px", l.max_distance_fail_px);
+  visit("position_warn_px", l.position_warn_px), visit("position_fail_px", l.position_fail_px);
+  visit("angle_warn_deg", l.angle_warn_deg), visit("angle_fail_deg", l.angle_fail_deg);
+  visit("dihedral_warn_deg", l.dihedral_warn_deg), visit("dihedral_fail_deg", l.dihedral_fail_deg);
+  visit("dihedral_max_warn_deg", l.dihedral_max_warn_deg), visit("dihedral_max_fail_deg", l.dihedral_max_fail_deg);
+  visit("jacobian_warn", l.jacobian_warn), visit("jacobian_fail", l.jacobian_fail);
+  visit("thin_warn_share", l.thin_warn_share), visit("thin_elements", l.thin_elements);
+  visit("small_label_voxels", l.small_label_voxels);
+}
+
 Json limits(const Limits& l) {
-  return {{"volume_warn_rel", l.volume_warn_rel}, {"volume_fail_rel", l.volume_fail_rel}, {"dice_warn", l.dice_warn}, {"dice_fail", l.dice_fail},
-          {"mean_distance_warn_px", l.mean_distance_warn_px}, {"mean_distance_fail_px", l.mean_distance_fail_px},
-          {"p95_distance_warn_px", l.p95_distance_warn_px}, {"p95_distance_fail_px", l.p95_distance_fail_px},
-          {"max_distance_warn_px", l.max_distance_warn_px}, {"max_distance_fail_px", l.max_distance_fail_px},
-          {"position_warn_px", l.position_warn_px}, {"position_fail_px", l.position_fail_px},
-          {"angle_warn_deg", l.angle_warn_deg}, {"angle_fail_deg", l.angle_fail_deg},
-          {"dihedral_warn_deg", l.dihedral_warn_deg}, {"dihedral_fail_deg", l.dihedral_fail_deg},
-          {"dihedral_max_warn_deg", l.dihedral_max_warn_deg}, {"dihedral_max_fail_deg", l.dihedral_max_fail_deg},
-          {"jacobian_warn", l.jacobian_warn}, {"jacobian_fail", l.jacobian_fail},
-          {"thin_warn_share", l.thin_warn_share}, {"thin_elements", l.thin_elements}, {"small_label_voxels", l.small_label_voxels}};
+  Json j = Json::object();
+  each_limit(l, [&](const char* name, const auto& value) { j[name] = value; });
+  return j;
+}
+
+Json mesh(const std::optional<JudgedMesh>& m) {
+  if (!m) return nullptr;
+  return {{"path", m->path}, {"format", m->format}, {"vertices", m->vertices}, {"triangles", m->triangles}, {"tets", m->tets}, {"order", m->order},
+          {"labels", m->labels}, {"space", m->space}, {"space_reason", m->space_reason}, {"sha256", m->sha256}};
+}
+
+Json provenance(const std::optional<Provenance>& p) {
+  if (!p) return nullptr;
+  return {{"input_sha256", p->input_sha256}, {"input_files", p->input_files},
+          {"program", {{"compiler", p->compiler}, {"build_type", p->build_type}, {"sha256", p->program_sha256}}},
+          {"machine", {{"processor", p->processor}, {"cores", p->cores}, {"memory_gib", p->memory_gib}, {"system", p->system}}},
+          {"finished_utc", p->finished_utc}};
 }
 
 }  // namespace
 
-std::string to_json(const RunReport& r) {
+namespace {
+
+Json describe(const RunReport& r) {
   Json options = Json::object();
   for (const auto& [name, value] : r.options) options[name] = value;
   Json stages = Json::array();
@@ -131,13 +170,56 @@ std::string to_json(const RunReport& r) {
       {"surface", surface(r)},
       {"volume", volume(r)},
       {"labels", labels},
+      {"mesh", mesh(r.mesh)},
       {"verdict", r.verdicts.empty() ? Json(nullptr) : Json(to_text(overall(r.verdicts)))},
       {"verdicts", verdicts},
       {"defects", defects},
       {"limits", limits(r.limits)},
+      {"provenance", provenance(r.provenance)},
       {"warnings", r.warnings}};
-  // File names need not be valid UTF-8: what is not is replaced.
-  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return j;
+}
+
+/// File names need not be valid UTF-8: what is not is replaced.
+std::string text_of(const Json& j) { return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+}  // namespace
+
+std::string to_json(const RunReport& report) { return text_of(describe(report)); }
+
+std::string to_json(const std::vector<RunReport>& reports) {
+  Json meshes = Json::array(), rows = Json::array(), names = Json::array();
+  for (const RunReport& r : reports) {
+    meshes.push_back(describe(r));
+    names.push_back(r.mesh ? r.mesh->path : r.input.path);
+  }
+  for (const ComparisonRow& row : compare(reports)) {
+    Json values = Json::array();
+    for (const double v : row.values) values.push_back(std::isfinite(v) ? Json(v) : Json(nullptr));
+    rows.push_back({{"id", row.id}, {"name", row.name}, {"values", values}, {"best", row.best}});
+  }
+  return text_of({{"schema", 1}, {"stackmesh", reports.empty() ? "" : reports[0].version}, {"command", "validate"},
+                  {"comparison", {{"meshes", names}, {"rows", rows}}}, {"meshes", meshes}});
+}
+
+Limits read_limits(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail_input("the limits cannot be opened", path, "check the name and the rights");
+  const Json j = Json::parse(file, nullptr, false);
+  if (j.is_discarded() || !j.is_object()) fail_input("the limits are no JSON object", path, "write {\"dice_warn\": 0.9, ...}; a report lists the names under limits");
+  Limits limits;
+  std::string known;
+  for (const auto& [key, value] : j.items()) {
+    bool found = false;
+    each_limit(limits, [&, name = key, given = value](const char* field, auto& into) {
+      if (name != field) return;
+      found = true;
+      if (!given.is_number() || given.template get<double>() < 0) fail_input("the limit '" + name + "' is no number from 0", path, "give a number");
+      into = given.template get<std::decay_t<decltype(into)>>();
+    });
+    if (!found) fail_input("there is no limit '" + key + "'", path, "a report lists the names under limits");
+  }
+  return limits;
 }
 
 }  // namespace stackmesh

@@ -35,6 +35,32 @@ struct LabelReport {
   std::optional<double> dice;
   std::optional<Distance> distance_mm, reverse_distance_mm;
   std::string cap_low, cap_high;  ///< "flat" or "round"
+  std::optional<long> genus;      ///< handles of all its shells; none unless closed
+  double surface_area_mm2 = 0, angle_min_deg = 0;
+  std::optional<double> dihedral_min_deg, dihedral_max_deg;
+  std::optional<double> thin_share, thickness_p5_mm;  ///< see check_thickness
+};
+
+/// The mesh that `validate` judged, as its file told it.
+struct JudgedMesh {
+  std::string path, format;
+  std::size_t vertices = 0, triangles = 0, tets = 0;  ///< in the file, before anything was joined or left out
+  int order = 1;                                      ///< 2: tets of 10 nodes
+  std::string labels;       ///< where its labels came from, and which label of the input each stands for
+  std::string space;        ///< "lps", "ras" or "none"
+  std::string space_reason; ///< why that one
+  std::string sha256;
+};
+
+/// Where a report comes from. Nothing of an image header goes in but grid and labels.
+struct Provenance {
+  std::string input_sha256;  ///< of the file; of several: of the lines "digest  name" in order of name
+  std::size_t input_files = 0;
+  std::string compiler, build_type, program_sha256;
+  std::string processor, system;
+  int cores = 0;
+  double memory_gib = 0;
+  std::string finished_utc;  ///< ISO 8601
 };
 
 /// Everything a run reports (modules/report/README.md lists the fields of the JSON form).
@@ -61,6 +87,8 @@ struct RunReport {
   std::optional<VolumeCheck> volume;
   std::string closure = "skipped";  ///< verified, failed or skipped
   std::vector<LabelReport> labels;
+  std::optional<JudgedMesh> mesh;  ///< of `validate`
+  std::optional<Provenance> provenance;
   std::vector<Verdict> verdicts;  ///< in the order in which they are read
   std::vector<Defect> defects;    ///< where it fails
   Limits limits;                  ///< that the verdicts were made with
@@ -69,5 +97,12 @@ struct RunReport {
 
 /// The report as JSON text (schema 1).
 std::string to_json(const RunReport& report);
+
+/// Reports of several meshes against one input, with a table of them: {"schema", "command", "comparison", "meshes"}.
+std::string to_json(const std::vector<RunReport>& reports);
+
+/// Limits from a JSON file of the fields that a report lists under "limits"; those left out keep their default.
+/// @throws Error(input) for an unreadable file, an unknown field or what is not a number.
+Limits read_limits(const std::string& path);
 
 }  // namespace stackmesh

@@ -19,7 +19,7 @@ struct EdgeSide {
 class BoundaryFinder {
  public:
   BoundaryFinder(const InterfaceComplex& complex, std::size_t limit, Boundaries& out)
-      : complex_(complex), limit_(limit), out_(out), sides_(2 * complex.triangles.size()) {}
+      : complex_(complex), limit_(limit), out_(out), sides_(2 * complex.triangles.size()), fans_(6 * complex.triangles.size()) {}
 
   void run() {
     check_input();
@@ -145,11 +145,22 @@ class BoundaryFinder {
       ++label.edges;
       if (sum != 0) open = true, label.closed = false;
       if (j - i > 2) nonmanifold = true, pair_across_solid(low, high, &group[i], &group[i] + (j - i));
-      if (j - i == 2) sides_.join(group[i].side, group[i + 1].side);
+      if (j - i == 2) join(low, high, group[i], group[i + 1]);
     }
     out_.nonmanifold_edges += nonmanifold;
     out_.open_edges += open;
     if (open && out_.open_edge_list.size() < limit_) out_.open_edge_list.push_back({low, high});
+  }
+
+  /// Two sides are neighbours at an edge: so are their corners at its ends.
+  void join(std::int32_t low, std::int32_t high, const EdgeSide& a, const EdgeSide& b) {
+    sides_.join(a.side, b.side);
+    for (const std::int32_t p : {low, high}) fans_.join(corner(a.side, p), corner(b.side, p));
+  }
+
+  std::int32_t corner(std::int32_t side, std::int32_t point) const {
+    const auto& v = complex_.triangles[side / 2].v;
+    return 3 * side + (v[0] == point ? 0 : v[1] == point ? 1 : 2);
   }
 
   /// Sorts the sides counter-clockwise around low -> high; from a side whose solid follows it, the next one
@@ -177,7 +188,7 @@ class BoundaryFinder {
     });
     for (std::size_t k = 0; k < order.size(); ++k) {
       const EdgeSide &a = begin[order[k]], &b = begin[order[(k + 1) % order.size()]];
-      if (a.sign < 0 && b.sign > 0) sides_.join(a.side, b.side);
+      if (a.sign < 0 && b.sign > 0) join(low, high, a, b);
     }
   }
 
@@ -197,6 +208,14 @@ class BoundaryFinder {
           e.high = {std::max(e.high.x, p[v].x), std::max(e.high.y, p[v].y), std::max(e.high.z, p[v].z)};
         }
       }
+    std::vector<long> fans(out_.labels.size(), 0);
+    for (std::size_t t = 0; t < out_.row.size(); ++t)
+      for (int s = 0; s < 2; ++s)
+        if (out_.row[t][s] >= 0)
+          for (int c = 0; c < 3; ++c) {
+            const std::int32_t id = static_cast<std::int32_t>(3 * (2 * t + s) + c);
+            fans[out_.row[t][s]] += fans_.find(id) == id;
+          }
     std::vector<std::int32_t> number(2 * out_.row.size(), -1);
     out_.piece.assign(out_.row.size(), {-1, -1});
     std::vector<long double> piece_volume, volume(out_.labels.size()), area(out_.labels.size());
@@ -209,6 +228,7 @@ class BoundaryFinder {
           piece = static_cast<std::int32_t>(piece_volume.size());
           piece_volume.push_back(0);
           out_.piece_row.push_back(row);
+          ++out_.labels[row].shells;
         }
         out_.piece[t][s] = piece;
         const Vec3 centre = 0.5 * (extents[row].low + extents[row].high);
@@ -222,6 +242,7 @@ class BoundaryFinder {
     for (std::size_t row = 0; row < out_.labels.size(); ++row) {
       out_.labels[row].volume_mm3 = static_cast<double>(volume[row]);
       out_.labels[row].area_mm2 = static_cast<double>(area[row]);
+      if (out_.labels[row].closed) out_.labels[row].genus = out_.labels[row].shells - (2 * fans[row] - out_.labels[row].triangles) / 4;
     }
     for (std::size_t i = 0; i < piece_volume.size(); ++i) {
       out_.piece_volume_mm3.push_back(static_cast<double>(piece_volume[i]));
@@ -232,7 +253,7 @@ class BoundaryFinder {
   const InterfaceComplex& complex_;
   const std::size_t limit_;
   Boundaries& out_;
-  DisjointSets sides_;
+  DisjointSets sides_, fans_;  // of 2 * triangle + side, and of 3 * side + corner
 };
 
 }  // namespace

@@ -14,6 +14,10 @@ struct LabelBoundary {
   long vertices = 0, edges = 0, triangles = 0;
   double volume_mm3 = 0, area_mm2 = 0;
   int outer_pieces = 0;  ///< pieces that enclose a positive volume
+  int shells = 0;        ///< pieces, walls of cavities included
+  /// Handles of all shells together, by V - E + F of the boundary with edges and vertices where it merely touches itself
+  /// taken apart; 0 unless closed.
+  long genus = 0;
 };
 
 /// The boundaries of all labels but 0, and the pieces they fall into: sides joined over edges; where more

@@ -42,6 +42,11 @@ class BoxTree {
   template <class Visit>
   void pairs_of_leaf(std::size_t leaf, Visit visit) const;
 
+  /// Calls visit(item, &reach) for items whose box the ray from + t * along, 0 <= t <= reach, may meet; visit may shorten
+  /// the reach. Boxes nearer along the ray come first, roughly.
+  template <class Visit>
+  void along_ray(const Vec3& from, const Vec3& along, double reach, Visit visit) const;
+
   /// The item nearest to p: distance2(item) must be no less than the squared distance to its box. `hint` is
   /// an item to try first (-1: none). Returns -1 when there is none.
   template <class Distance2>
@@ -84,6 +89,39 @@ void BoxTree::pairs_of_leaf(std::size_t leaf, Visit visit) const {
       for (std::size_t j = from; j < to; ++j)
         if (boxes_[i].meets(boxes_[j])) visit(items_[i], items_[j]);
     }
+  }
+}
+
+template <class Visit>
+void BoxTree::along_ray(const Vec3& from, const Vec3& along, double reach, Visit visit) const {
+  const double o[3] = {from.x, from.y, from.z}, d[3] = {along.x, along.y, along.z};
+  const auto enters = [&](const Box& b) {  // infinite: not within reach
+    double low = 0, high = reach;
+    for (int k = 0; k < 3; ++k) {
+      if (d[k] == 0) {
+        if (o[k] < b.low[k] || o[k] > b.high[k]) return std::numeric_limits<double>::infinity();
+        continue;
+      }
+      const double p = (b.low[k] - o[k]) / d[k], q = (b.high[k] - o[k]) / d[k];
+      low = std::max(low, std::min(p, q)), high = std::min(high, std::max(p, q));
+    }
+    return low <= high ? low : std::numeric_limits<double>::infinity();
+  };
+  std::size_t stack[128];
+  int top = 0;
+  stack[top++] = 1;
+  while (top > 0) {
+    const std::size_t node = stack[--top];
+    if (!(enters(nodes_[node]) <= reach)) continue;
+    if (node >= width_) {
+      const std::size_t first = (node - width_) * kLeafItems, last = std::min(first + kLeafItems, items_.size());
+      for (std::size_t i = first; i < last; ++i)
+        if (enters(boxes_[i]) <= reach) visit(items_[i], &reach);
+      continue;
+    }
+    const bool left_first = enters(nodes_[2 * node]) <= enters(nodes_[2 * node + 1]);
+    stack[top++] = left_first ? 2 * node + 1 : 2 * node;
+    stack[top++] = left_first ? 2 * node : 2 * node + 1;
   }
 }
 

@@ -16,7 +16,7 @@
 namespace stackmesh {
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kChunk = 1024, kShiftSamples = 4000;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Corners {
@@ -46,10 +46,11 @@ double triangle_distance2(const Vec3& p, const Corners& t) {
 /// Distances from points to the nearest of some items; the points follow each other closely.
 template <class Item, class Distance2>
 Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items,
-                 const std::vector<Box>& boxes, int threads, Distance2 distance2) {
+                 const std::vector<Box>& boxes, int threads, Distance2 distance2, std::vector<std::int32_t>* nearest = nullptr) {
   if (points.empty() || items.empty()) return {kNaN, kNaN, kNaN};
   const BoxTree tree(boxes);
   std::vector<double> distances(points.size());
+  if (nearest) nearest->resize(points.size());
   parallel_for((points.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
     std::int32_t hint = -1;
     for (std::size_t i = chunk * kChunk; i < std::min(points.size(), (chunk + 1) * kChunk); ++i) {
@@ -57,6 +58,7 @@ Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items
       hint = tree.nearest(
           points[i], hint, [&](std::int32_t k) { return distance2(points[i], items[k]); }, &best);
       distances[i] = std::sqrt(best);
+      if (nearest) (*nearest)[i] = hint;
     }
   });
   Distance d;
@@ -73,13 +75,13 @@ std::uint64_t hash(std::uint64_t x) {  // splitmix64
   return x ^ (x >> 31);
 }
 
-/// Centres of in-plane faces, at most about `most`, chosen by a hash of their number so that no pattern
-/// survives.
+/// Centres of faces, or of the in-plane ones only, at most about `most`, chosen by a hash of their number so
+/// that no pattern survives.
 std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStrip>& strips, std::size_t most,
-                               std::uint64_t seed) {
+                               std::uint64_t seed, bool in_plane_only = true) {
   std::size_t count = 0;
   for (const FaceStrip& s : strips)
-    if (s.axis != 2) count += static_cast<std::size_t>(s.end - s.begin);
+    if (s.axis != 2 || !in_plane_only) count += static_cast<std::size_t>(s.end - s.begin);
   const bool all = count <= most;
   const std::uint64_t threshold =
       all ? 0
@@ -88,11 +90,11 @@ std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStri
   std::vector<Vec3> points;
   std::size_t number = 0;
   for (const FaceStrip& s : strips) {
-    if (s.axis == 2) continue;
+    if (s.axis == 2 && in_plane_only) continue;
     for (std::int32_t w = s.begin; w < s.end; ++w)
       if (all || hash(seed ^ hash(number++)) < threshold)
         points.push_back(
-            runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v));
+            runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v + (s.axis == 2 ? 0.5 * s.sign : 0)));
   }
   return points;
 }
@@ -119,26 +121,155 @@ std::vector<Vec3> sample_surface(const std::vector<Corners>& triangles, std::siz
   return points;
 }
 
-void match_components(const LabelRuns& runs, const Boundaries& boundaries, const GridWalk& walk,
+/// The shift t, and a swelling b, that fit best to the signed distances s = n.t + b of voxel faces from the
+/// triangle nearest to them. Outliers (parts that are missing) are left out, in two rounds. mm along W, U, V.
+std::optional<Vec3> fit_shift(const std::vector<Vec3>& points, const std::vector<std::int32_t>& nearest,
+                              const std::vector<Corners>& triangles, double voxel_mm) {
+  struct Sample {
+    double n[4], s;
+  };
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Corners& t = triangles[nearest[i]];
+    const Vec3 n = cross(t.b - t.a, t.c - t.a);
+    const double length = norm(n);
+    if (!(length > 0)) continue;
+    const double s = dot(n, t.a - points[i]) / length;
+    if (std::abs(s) < 2 * voxel_mm) samples.push_back({{n.x / length, n.y / length, n.z / length, 1}, s});
+  }
+  double x[4] = {0, 0, 0, 0}, gate = 2 * voxel_mm;
+  for (int round = 0; round < 3; ++round) {
+    double a[4][5] = {};
+    std::size_t used = 0;
+    for (const Sample& m : samples) {
+      double residual = m.s;
+      for (int k = 0; k < 4; ++k) residual -= m.n[k] * x[k];
+      if (std::abs(residual) > gate) continue;
+      ++used;
+      for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) a[i][j] += m.n[i] * m.n[j];
+        a[i][4] += m.n[i] * m.s;
+      }
+    }
+    if (used < 50) return std::nullopt;
+    // b first, so that the pivots of the shift tell whether it is determined.
+    const int order[4] = {3, 0, 1, 2};
+    for (int i = 0; i < 4; ++i) {
+      const int p = order[i];
+      if (a[p][p] < 0.02 * static_cast<double>(used)) return std::nullopt;
+      for (int j = 0; j < 4; ++j) {
+        if (j == p) continue;
+        const double factor = a[j][p] / a[p][p];
+        for (int k = 0; k < 5; ++k) a[j][k] -= factor * a[p][k];
+      }
+    }
+    for (int k = 0; k < 4; ++k) x[k] = a[k][4] / a[k][k];
+    std::vector<double> residuals;
+    for (const Sample& m : samples) {
+      double residual = m.s;
+      for (int k = 0; k < 4; ++k) residual -= m.n[k] * x[k];
+      residuals.push_back(std::abs(residual));
+    }
+    gate = std::max(3 * percentile(residuals, 0.5), 0.02 * voxel_mm);
+  }
+  return Vec3{x[0], x[1], x[2]};
+}
+
+/// A point along W, U, V in mm as a world point.
+Vec3 to_world(const LabelRuns& runs, const Vec3& p) {
+  return runs.origin_mm + (p.x * runs.direction[0] + p.y * runs.direction[1] + p.z * runs.direction[2]);
+}
+
+/// Middles and sizes of the components of the input, and pieces of the mesh, that nothing answers to.
+void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points, const Boundaries& boundaries,
+                      const std::vector<char>& component_lost, const std::vector<char>& piece_lost,
+                      const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
+  struct Extent {
+    Vec3 sum, low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
+    double weight = 0;
+    void add(const Vec3& p, double w) {
+      sum = sum + w * p, weight += w;
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    double size() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
+  };
+  constexpr std::size_t kMost = 100;
+  const double voxel = runs.spacing_mm[0] * runs.spacing_mm[1] * runs.spacing_mm[2];
+  const auto part_of = [&](const Extent& e) {
+    UnmatchedPart part;
+    const Vec3 middle = (1 / e.weight) * e.sum;
+    part.where = to_world(runs, middle);
+    part.section = static_cast<int>(std::clamp(std::lround(middle.z / runs.spacing_mm[2]), 0L, static_cast<long>(runs.size[2]) - 1));
+    part.size_mm = e.size();
+    return part;
+  };
+  const auto keep = [](std::vector<UnmatchedPart>& parts) {
+    std::stable_sort(parts.begin(), parts.end(), [](const UnmatchedPart& a, const UnmatchedPart& b) { return a.volume_mm3 > b.volume_mm3; });
+    if (parts.size() > kMost) parts.resize(kMost);
+  };
+  if (std::count(component_lost.begin(), component_lost.end(), 1) > 0) {
+    std::vector<Extent> extents(component_lost.size());
+    for (std::size_t line = 0; line + 1 < runs.start.size(); ++line)
+      for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
+        const LabelRun& r = runs.runs[k];
+        if (!component_lost[r.component]) continue;
+        const double u = static_cast<double>(line % static_cast<std::size_t>(runs.size[1])), v = static_cast<double>(line / static_cast<std::size_t>(runs.size[1]));
+        Extent& e = extents[r.component];
+        e.add(runs.place(0.5 * (r.begin + r.end - 1), u, v), r.end - r.begin);
+        const double weight = e.weight;
+        const Vec3 sum = e.sum;
+        e.add(runs.place(r.begin - 0.5, u - 0.5, v - 0.5), 0), e.add(runs.place(r.end - 0.5, u + 0.5, v + 0.5), 0);
+        e.weight = weight, e.sum = sum;
+      }
+    for (std::size_t c = 0; c < extents.size(); ++c) {
+      if (!component_lost[c]) continue;
+      UnmatchedPart part = part_of(extents[c]);
+      part.voxels = static_cast<std::size_t>(extents[c].weight);
+      part.volume_mm3 = extents[c].weight * voxel;
+      rows[runs.component_label[c] - 1].missing.push_back(part);
+    }
+  }
+  if (std::count(piece_lost.begin(), piece_lost.end(), 1) > 0) {
+    std::vector<Extent> extents(piece_lost.size());
+    for (std::size_t t = 0; t < boundaries.piece.size(); ++t)
+      for (const std::int32_t piece : boundaries.piece[t])
+        if (piece >= 0 && piece_lost[piece])
+          for (const std::int32_t v : complex.triangles[t].v) extents[piece].add(points[v], 1);
+    for (std::size_t p = 0; p < extents.size(); ++p) {
+      if (!piece_lost[p] || extents[p].weight == 0) continue;
+      UnmatchedPart part = part_of(extents[p]);
+      part.volume_mm3 = boundaries.piece_volume_mm3[p];
+      rows[row_label[boundaries.piece_row[p]] - 1].unmatched.push_back(part);
+    }
+  }
+  for (LabelFidelity& row : rows) keep(row.missing), keep(row.unmatched);
+}
+
+void match_components(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points, const Boundaries& boundaries, const GridWalk& walk,
                       const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
   std::vector<int> met_by_component(runs.component_label.size(), 0),
       met_by_solid(boundaries.piece_row.size(), 0);
   for (const auto& [component, solid] : walk.meets) ++met_by_component[component], ++met_by_solid[solid];
   std::vector<char> one_to_one(rows.size() + 1, 1);
+  std::vector<char> component_lost(met_by_component.size(), 0), piece_lost(met_by_solid.size(), 0);
   for (std::size_t c = 0; c < met_by_component.size(); ++c) {
     LabelFidelity& row = rows[runs.component_label[c] - 1];
     ++row.input_components;
     row.missing_components += met_by_component[c] == 0;
+    component_lost[c] = met_by_component[c] == 0;
     if (met_by_component[c] != 1) one_to_one[runs.component_label[c]] = 0;
   }
   for (std::size_t p = 0; p < met_by_solid.size(); ++p) {
     const std::int32_t label = row_label[boundaries.piece_row[p]];
     if (label < 0) continue;
     if (boundaries.piece_volume_mm3[p] > 0) ++rows[label - 1].components;
+    piece_lost[p] = boundaries.piece_volume_mm3[p] > 0 && met_by_solid[walk.solid[p]] == 0;
     if (met_by_solid[p] > 1) one_to_one[label] = 0;
   }
   for (std::size_t l = 0; l < rows.size(); ++l)
     rows[l].components_match = one_to_one[l + 1] && rows[l].components == rows[l].input_components;
+  locate_unmatched(runs, complex, points, boundaries, component_lost, piece_lost, row_label, rows);
 }
 
 }  // namespace
@@ -175,7 +306,18 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
       const std::size_t sum = walk.input[l] + walk.mesh[l];
       row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
     }
-    match_components(runs, boundaries, walk, row_label, rows);
+    match_components(runs, complex, points, boundaries, walk, row_label, rows);
+    for (std::size_t r = 0; r < row_label.size(); ++r) {
+      if (row_label[r] < 0) continue;
+      LabelFidelity& row = rows[row_label[r] - 1];
+      const Vec3& m = walk.row_middle[r];
+      row.middle = to_world(runs, runs.place(m.x, m.y, m.z));
+      for (std::size_t l = 1; l < labels; ++l) {
+        const std::size_t sum = walk.input[l] + walk.row_centres[r];
+        const double dice = sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
+        if (dice > row.best_dice) row.best_dice = dice, row.best_match = volume.labels[l].number;
+      }
+    }
   }
 
   std::vector<std::vector<std::int32_t>> of_row(boundaries.labels.size());
@@ -190,13 +332,26 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
     if (label_row[l] >= 0)
       for (const std::int32_t t : of_row[label_row[l]]) {
         const auto& v = complex.triangles[t].v;
-        triangles.push_back({points[v[0]], points[v[1]], points[v[2]]});
+        const bool below = boundaries.row[t][0] == label_row[l];  // outwards, but for a mirrored grid
+        triangles.push_back({points[v[0]], points[v[below ? 1 : 2]], points[v[below ? 2 : 1]]});
         boxes.emplace_back();
         for (const std::int32_t p : v) boxes.back().add(points[p]);
       }
     const std::vector<Vec3> from_faces = sample_faces(runs, faces[l], options.face_samples, options.seed);
     row.distance_samples = from_faces.size();
     row.distance_mm = measure(from_faces, triangles, boxes, options.threads, triangle_distance2);
+    if (!triangles.empty() && !faces[l].empty()) {
+      const std::vector<Vec3> all_round = sample_faces(runs, faces[l], kShiftSamples, options.seed, false);
+      std::vector<std::int32_t> nearest;
+      measure(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
+      const double voxel = std::max({runs.spacing_mm[0], runs.spacing_mm[1], runs.spacing_mm[2]});
+      if (const auto shift = nearest.empty() ? std::nullopt : fit_shift(all_round, nearest, triangles, voxel)) {
+        const double along[3] = {shift->x, shift->y, shift->z};
+        double by_axis[3];
+        for (int k = 0; k < 3; ++k) by_axis[runs.axis[k]] = along[k] / runs.spacing_mm[k];
+        row.offset_voxels = Vec3{by_axis[0], by_axis[1], by_axis[2]};
+      }
+    }
 
     const std::vector<Rectangle> rectangles = rectangles_of(runs, faces[l]);
     boxes = boxes_of(rectangles);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "model/complex.h"
@@ -11,6 +12,15 @@ namespace stackmesh {
 /// A distribution of distances, mm; NaN where there is nothing to measure.
 struct Distance {
   double mean = 0, p95 = 0, max = 0;
+};
+
+/// A part of the input that the mesh lacks, or of the mesh that the input lacks.
+struct UnmatchedPart {
+  Vec3 where;               ///< its middle, in the volume's world frame, mm
+  std::size_t voxels = 0;   ///< of a component of the input
+  double volume_mm3 = 0;
+  double size_mm = 0;       ///< largest extent along an axis of the grid
+  int section = 0;          ///< nearest slice, from 0 along the stacking axis
 };
 
 /// How well a complex stands for one label of the input.
@@ -28,6 +38,14 @@ struct LabelFidelity {
   /// piece with exactly one component.
   bool components_match = false;
   std::size_t missing_components = 0;  ///< input components none of whose centres is in the label in the mesh
+  std::vector<UnmatchedPart> missing;    ///< those components, largest first, at most 100
+  std::vector<UnmatchedPart> unmatched;  ///< solid pieces of the mesh that share no centre with the label's voxels; at most 100
+  Label best_match = 0;   ///< label of the input that the mesh's label covers best; 0: none
+  double best_dice = 0;   ///< with that one
+  Vec3 middle;            ///< of the mesh's voxel centres, world, mm
+  /// Rigid shift of the mesh against the voxels along the volume's axes x, y, z, in voxels; none where the
+  /// shape does not tell it (least squares over the distances of voxel faces, outliers left out).
+  std::optional<Vec3> offset_voxels;
 };
 
 struct FidelityOptions {

@@ -8,20 +8,6 @@
 #include "validate/statistics.h"
 
 namespace stackmesh {
-namespace {
-
-/// The smallest angle lies opposite the shortest side.
-double smallest_angle_deg(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 side[3] = {b - a, c - b, a - c};
-  int shortest = 0;
-  for (int k = 1; k < 3; ++k)
-    if (dot(side[k], side[k]) < dot(side[shortest], side[shortest])) shortest = k;
-  const Vec3 u = side[(shortest + 1) % 3], v = -1 * side[(shortest + 2) % 3];
-  return kDegrees * std::atan2(norm(cross(u, v)), dot(u, v));
-}
-
-}  // namespace
-
 SurfaceCheck check_surface(const InterfaceComplex& complex, const SurfaceCheckOptions& options) {
   SurfaceCheck check;
   check.vertices = complex.points.size();
@@ -33,7 +19,7 @@ SurfaceCheck check_surface(const InterfaceComplex& complex, const SurfaceCheckOp
   check.open_edge_list = std::move(boundaries.open_edge_list);
   for (const LabelBoundary& b : boundaries.labels)
     check.labels.push_back(
-        {b.label, b.closed, b.outer_pieces, b.vertices - b.edges + b.triangles, b.volume_mm3, b.area_mm2});
+        {b.label, b.closed, b.outer_pieces, b.vertices - b.edges + b.triangles, b.genus, b.volume_mm3, b.area_mm2, 180});
 
   SelfIntersections found = find_self_intersections(complex, options.threads, options.list_limit);
   check.self_intersections = found.count;
@@ -48,6 +34,9 @@ SurfaceCheck check_surface(const InterfaceComplex& complex, const SurfaceCheckOp
       angles[t] = smallest_angle_deg(complex.points[v[0]], complex.points[v[1]], complex.points[v[2]]);
     }
   });
+  for (std::size_t t = 0; t < angles.size(); ++t)
+    for (const std::int32_t row : boundaries.row[t])
+      if (row >= 0) check.labels[row].angle_min_deg = std::min(check.labels[row].angle_min_deg, angles[t]);
   check.angle_median_deg = percentile(angles, 0.5);
   check.angle_p1_deg = percentile(angles, 0.01);
   check.angle_min_deg = percentile(angles, 0);

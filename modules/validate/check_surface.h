@@ -15,8 +15,10 @@ struct LabelSurface {
   int components =
       0;  ///< solid pieces; those that touch at an edge or a vertex only are apart, cavities are no pieces
   long euler = 0;         ///< V - E + F of the boundary, with the vertices of the complex
+  long genus = 0;         ///< handles: of all its shells, touching edges and vertices taken apart; 0 unless closed
   double volume_mm3 = 0;  ///< signed, by the divergence theorem: positive when the boundary faces outwards
   double area_mm2 = 0;
+  double angle_min_deg = 0;  ///< smallest of its triangles
 };
 
 /// What a complex is like; angles and edges of an empty one are 0.

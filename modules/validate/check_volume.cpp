@@ -221,13 +221,19 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
       if (!mesh.mid.empty()) judge_curved(mesh, t, shapes[t], inverted[t]);
     }
   });
-  std::map<Label, std::pair<std::size_t, long double>> labels;
+  struct Sum {
+    LabelTets row;
+    long double volume_mm3 = 0;
+  };
+  std::map<Label, Sum> labels;
   std::vector<double> dihedrals(shapes.size());
   for (std::size_t t = 0; t < shapes.size(); ++t) {
     const Shape& s = shapes[t];
-    auto& label = labels[mesh.labels[t]];
-    ++label.first;
-    label.second += s.volume_mm3;
+    Sum& label = labels[mesh.labels[t]];
+    ++label.row.tets;
+    label.volume_mm3 += s.volume_mm3;
+    label.row.dihedral_min_deg = std::min(label.row.dihedral_min_deg, s.dihedral_min_deg);
+    label.row.dihedral_max_deg = std::max(label.row.dihedral_max_deg, s.dihedral_max_deg);
     check.inverted += inverted[t];
     for (const std::uint8_t bin : s.bins) ++check.dihedral_histogram[bin];
     dihedrals[t] = s.dihedral_min_deg;
@@ -240,8 +246,11 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
   check.in_narrow_wedges = count_in_narrow_wedges(mesh, shapes);
   check.dihedral_p1_deg = percentile(dihedrals, 0.01);
   check.dihedral_min_deg = percentile(dihedrals, 0);
-  for (const auto& [label, sum] : labels)
-    check.labels.push_back({label, sum.first, static_cast<double>(sum.second)});
+  for (auto& [label, sum] : labels) {
+    sum.row.label = label;
+    sum.row.volume_mm3 = static_cast<double>(sum.volume_mm3);
+    check.labels.push_back(sum.row);
+  }
 }
 
 /// A triangle with its points ascending. `even`: as written it runs like its ascending points, so that for a

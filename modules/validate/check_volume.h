@@ -12,6 +12,7 @@ struct LabelTets {
   Label label = 0;
   std::size_t tets = 0;
   double volume_mm3 = 0;  ///< signed; of second-order tets the volume within their curved sides
+  double dihedral_min_deg = 180, dihedral_max_deg = 0;
 };
 
 /// What a tetrahedral mesh is like; measures of an empty one are 0.

@@ -22,8 +22,9 @@ struct Crossing {
 class Walker {
  public:
   Walker(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
-         const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels)
-      : complex_(complex), boundaries_(boundaries), runs_(runs), row_label_(row_label), labels_(labels) {
+         const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels,
+         int step)
+      : complex_(complex), boundaries_(boundaries), runs_(runs), row_label_(row_label), labels_(labels), step_(step) {
     points_.reserve(grid_points.size());
     for (const Vec3& p : grid_points)
       points_.push_back({p.x / runs.spacing_mm[0], p.y / runs.spacing_mm[1], p.z / runs.spacing_mm[2]});
@@ -33,21 +34,40 @@ class Walker {
   GridWalk run(int threads) {
     GridWalk walk;
     walk.input.assign(labels_, 0), walk.mesh.assign(labels_, 0), walk.both.assign(labels_, 0);
-    for (const LabelRun& r : runs_.runs) walk.input[r.label] += static_cast<std::size_t>(r.end - r.begin);
+    const std::size_t in_plane = static_cast<std::size_t>(runs_.size[1]);
+    for (std::size_t v = 0; v < static_cast<std::size_t>(runs_.size[2]); v += static_cast<std::size_t>(step_))
+      for (std::size_t k = runs_.start[v * in_plane]; k < runs_.start[(v + 1) * in_plane]; ++k)
+        walk.input[runs_.runs[k].label] += static_cast<std::size_t>(runs_.runs[k].end - runs_.runs[k].begin);
+    const std::size_t rows = row_label_.size();
+    walk.row_centres.assign(rows, 0), walk.row_middle.assign(rows, {}), walk.overlap.assign(rows * labels_, 0);
+    std::vector<std::array<std::uint64_t, 3>> sums(rows, {0, 0, 0});
     sort_triangles_to_planes();
     const std::size_t planes = static_cast<std::size_t>(runs_.size[2]);
     std::vector<Pairs> same_solid(planes), meets(planes);
     std::mutex mutex;
     parallel_for(planes, threads, [&](std::size_t v) {
-      PlaneResult plane(labels_);
+      if (v % static_cast<std::size_t>(step_) != 0 || start_[v] == start_[v + 1]) return;
+      PlaneResult plane(row_label_.size(), labels_);
       walk_plane(static_cast<std::int32_t>(v), plane);
       make_unique(plane.same_solid);
       make_unique(plane.meets);
       same_solid[v] = std::move(plane.same_solid);
       meets[v] = std::move(plane.meets);
       const std::lock_guard<std::mutex> lock(mutex);  // sums of integers: any order
-      for (std::size_t l = 0; l < labels_; ++l) walk.mesh[l] += plane.mesh[l], walk.both[l] += plane.both[l];
+      for (std::size_t row = 0; row < rows; ++row) {
+        if (plane.centres[row] == 0) continue;
+        walk.row_centres[row] += plane.centres[row];
+        sums[row][0] += plane.sum_w[row], sums[row][1] += plane.sum_u[row], sums[row][2] += plane.centres[row] * v;
+        for (std::size_t l = 0; l < labels_; ++l) walk.overlap[row * labels_ + l] += plane.overlap[row * labels_ + l];
+      }
     });
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double n = static_cast<double>(std::max<std::size_t>(1, walk.row_centres[row]));
+      walk.row_middle[row] = {static_cast<double>(sums[row][0]) / n, static_cast<double>(sums[row][1]) / n, static_cast<double>(sums[row][2]) / n};
+      if (row_label_[row] < 0) continue;
+      walk.mesh[row_label_[row]] += walk.row_centres[row];
+      walk.both[row_label_[row]] += walk.overlap[row * labels_ + row_label_[row]];
+    }
     DisjointSets solids(boundaries_.piece_row.size());
     for (const Pairs& pairs : same_solid)
       for (const auto& p : pairs) solids.join(p.first, p.second);
@@ -63,8 +83,8 @@ class Walker {
   using Pairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
   struct PlaneResult {
-    explicit PlaneResult(std::size_t labels) : mesh(labels), both(labels) {}
-    std::vector<std::size_t> mesh, both;
+    PlaneResult(std::size_t rows, std::size_t labels) : centres(rows), sum_w(rows), sum_u(rows), overlap(rows * labels) {}
+    std::vector<std::size_t> centres, sum_w, sum_u, overlap;
     Pairs same_solid, meets;
   };
 
@@ -182,20 +202,21 @@ class Walker {
   void count(std::size_t line, std::size_t& run, std::int32_t row, std::int32_t piece, double from, double to,
              PlaneResult& result) const {
     const std::int32_t label = row_label_[row];
-    if (label < 0) return;
     const auto centre = [&](double w) {
       return static_cast<std::int32_t>(
           std::clamp(std::ceil(w - kOffset[0]), 0.0, static_cast<double>(runs_.size[0])));
     };
     const std::int32_t first = centre(from), last = centre(to);
     if (first >= last) return;
-    result.mesh[label] += static_cast<std::size_t>(last - first);
+    const std::size_t n = static_cast<std::size_t>(last - first);
+    result.centres[row] += n;
+    result.sum_w[row] += n * (static_cast<std::size_t>(first) + static_cast<std::size_t>(last) - 1) / 2;
+    result.sum_u[row] += n * (line % static_cast<std::size_t>(runs_.size[1]));
     while (run < runs_.start[line + 1] && runs_.runs[run].end <= first) ++run;
     for (std::size_t k = run; k < runs_.start[line + 1] && runs_.runs[k].begin < last; ++k) {
-      if (runs_.runs[k].label != label) continue;
-      result.both[label] +=
+      result.overlap[static_cast<std::size_t>(row) * labels_ + static_cast<std::size_t>(runs_.runs[k].label)] +=
           static_cast<std::size_t>(std::min(last, runs_.runs[k].end) - std::max(first, runs_.runs[k].begin));
-      add(result.meets, runs_.runs[k].component, piece);
+      if (runs_.runs[k].label == label) add(result.meets, runs_.runs[k].component, piece);
     }
   }
 
@@ -204,6 +225,7 @@ class Walker {
   const LabelRuns& runs_;
   const std::vector<std::int32_t>& row_label_;
   const std::size_t labels_;
+  const int step_;
   std::vector<Vec3> points_;  // along W, U, V in voxels
   bool left_handed_ = false;
   std::vector<std::size_t> start_;  // triangles of each plane
@@ -214,8 +236,8 @@ class Walker {
 
 GridWalk walk_grid(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
                    const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label,
-                   std::size_t labels, int threads) {
-  return Walker(complex, boundaries, runs, grid_points, row_label, labels).run(threads);
+                   std::size_t labels, int threads, int step) {
+  return Walker(complex, boundaries, runs, grid_points, row_label, labels, step).run(threads);
 }
 
 }  // namespace stackmesh

@@ -26,8 +26,9 @@ class Judge {
   std::vector<Verdict> run() {
     if (in_.surface) closed(), intersections();
     if (in_.volume && in_.volume->tets > 0) orientation(), conforming();
-    if (in_.fidelity && !in_.fidelity->empty()) components(), volume(), fidelity();
+    if (in_.fidelity && !in_.fidelity->empty()) components(), volume(), position(), fidelity();
     if (in_.surface) quality();
+    if (in_.thickness && !in_.thickness->empty()) thickness();
     return std::move(verdicts_);
   }
 
@@ -163,6 +164,54 @@ class Judge {
   }
 
   std::string blame(const std::vector<Label>& labels) const { return labels.empty() ? "" : " Outside: " + list(labels) + "."; }
+
+  /// The whole mesh's shift: per axis, the median of the labels' shifts, by voxels.
+  void position() {
+    double shift[3] = {0, 0, 0};
+    bool known = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<std::pair<double, double>> all;
+      double total = 0;
+      for (const LabelFidelity& f : *in_.fidelity) {
+        if (!f.offset_voxels) continue;
+        const double weight = static_cast<double>(f.input_voxels);
+        all.push_back({axis == 0 ? f.offset_voxels->x : axis == 1 ? f.offset_voxels->y : f.offset_voxels->z, weight});
+        total += weight;
+      }
+      std::sort(all.begin(), all.end());
+      double passed = 0;
+      for (const auto& [value, weight] : all) {
+        passed += weight;
+        if (passed < 0.5 * total) continue;
+        shift[axis] = value, known = true;
+        break;
+      }
+    }
+    if (!known) return;
+    const double worst = std::max({std::abs(shift[0]), std::abs(shift[1]), std::abs(shift[2])});
+    Verdict& v = add("position", "In place");
+    v.status = above(worst, l_.position_warn_px, l_.position_fail_px);
+    v.figure = text_of("shifted by (%+.2f, ", shift[0]) + text_of("%+.2f, ", shift[1]) + text_of("%+.2f) voxels", shift[2]);
+    v.limit = text_of("warn above %g", l_.position_warn_px) + text_of(", fail above %g voxels along an axis", l_.position_fail_px);
+    v.explanation = "Rigid shift along the volume's axes that fits the mesh best to the voxels' faces. A half or whole voxel tells of a program "
+                    "that counts from corners instead of centres.";
+  }
+
+  void thickness() {
+    Verdict& v = add("thickness", "Thick enough");
+    std::vector<Row> rows;
+    double worst = 0;
+    Label worst_label = 0;
+    for (const LabelThickness& t : *in_.thickness) {
+      if (t.thin_share > worst) worst = t.thin_share, worst_label = t.label;
+      rows.push_back({t.label, above(t.thin_share, l_.thin_warn_share, 2), t.thin_share});
+    }
+    take(v, rows);
+    v.figure = text_of("%.1f %% of the surface thinner than", 100 * worst) + text_of(" %g elements", l_.thin_elements);
+    if (worst_label != 0 && rows.size() > 1) v.figure += ", " + name(worst_label);
+    v.limit = text_of("warn above %g %%", 100 * l_.thin_warn_share);
+    v.explanation = "Share of a label's surface with fewer elements through its thickness: bending is too stiff there with linear elements." + blame(v.labels);
+  }
 
   void fidelity() {
     Verdict& v = add("fidelity", "Fidelity");

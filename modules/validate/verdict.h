@@ -7,6 +7,7 @@
 #include "model/label_volume.h"
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
+#include "validate/check_thickness.h"
 #include "validate/check_volume.h"
 
 namespace stackmesh {
@@ -67,6 +68,7 @@ struct JudgeInput {
   const SurfaceCheck* surface = nullptr;
   const VolumeCheck* volume = nullptr;
   const std::vector<LabelFidelity>* fidelity = nullptr;
+  const std::vector<LabelThickness>* thickness = nullptr;
   std::vector<LabelInfo> labels;                   ///< of the input, without the background; names for texts
   std::vector<double> input_volume_mm3;            ///< beside `labels`; empty: unknown
   double pixel_mm = 1, voxel_mm = 1;               ///< smallest in-plane and largest spacing

@@ -1,0 +1,639 @@
+#include "pipeline/validate_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "base/sha256.h"
+#include "pipeline/provenance.h"
+#include "pipeline/stage_clock.h"
+#include "report/comparison.h"
+#include "validate/check_thickness.h"
+#include "validate/defects.h"
+#include "validate/exact.h"
+#include "validate/overlap.h"
+
+namespace stackmesh {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", share);
+  return text;
+}
+
+/// Letters and digits only, in lower case: how decks and groups spell a name.
+std::string plain(const std::string& name) {
+  std::string text;
+  for (char c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) text += c;
+  }
+  return text;
+}
+
+/// What is read once for all meshes.
+struct Against {
+  Input input;
+  int axis = 2;
+  std::optional<OverlapMeter> meter;
+};
+
+/// One mesh, from its file to its verdicts.
+class ValidateRun {
+ public:
+  ValidateRun(const ValidateRunOptions& options, Against* against, const RunReport& start, Progress& progress)
+      : o_(options), against_(against), report_(start), clock_(progress, report_.stages) {}
+
+  RunReport run(const std::string& path) {
+    clock_.run("read", [&] { read(path); });
+    clock_.run("validate", [&] {
+      turn_round();
+      take_frame();
+      match_labels();
+      check();
+      verdicts();
+    });
+    return std::move(report_);
+  }
+
+  /// The defects' triangles, where they were asked for and there are any.
+  void write_defects(AtomicFiles& files, RunReport& report) const {
+    if (!o_.write_defects || report.defects.empty()) return;
+    const InterfaceComplex part = defect_triangles(surface_, tets_.tets.empty() ? nullptr : &tets_, report.defects);
+    if (part.triangles.empty()) return;
+    std::string name = file_.path.substr(file_.path.rfind('/') + 1);
+    for (char& c : name)
+      if (c == '.') c = '_';
+    std::string folder = o_.defects_folder;
+    if (folder.empty() && !o_.reports.empty() && o_.reports[0].rfind('/') != std::string::npos) folder = o_.reports[0].substr(0, o_.reports[0].rfind('/'));
+    const std::string path = (folder.empty() ? "" : folder + "/") + name + ".defects.vtp";
+    MeshWriteOptions w;
+    w.space = world_;
+    write_surface(files, path, part, w);
+    report.warnings.push_back("the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1");
+  }
+
+ private:
+  void warn(const std::string& text) { report_.warnings.push_back(text); }
+
+  void read(const std::string& path) {
+    file_ = read_mesh(path, o_.read);
+    JudgedMesh m;
+    m.path = path, m.format = file_.format;
+    m.vertices = file_.points.size() + file_.merged_points;
+    m.triangles = file_.triangles.size() + file_.dropped_triangles, m.tets = file_.tets.size();
+    m.order = file_.midside.empty() ? 1 : 2;
+    if (!o_.reports.empty()) m.sha256 = sha256_of_file(path);
+    report_.mesh = std::move(m);
+    for (const std::string& n : file_.notes) warn(n);
+    if (!file_.midside.empty()) warn("tetrahedra of 10 nodes are judged by their four corners");
+    if (file_.tets.empty()) {
+      surface_.points = std::move(file_.points);
+      surface_.triangles = std::move(file_.triangles);
+      return;
+    }
+    tets_.points = std::move(file_.points);
+    tets_.tets = std::move(file_.tets);
+    tets_.labels = std::move(file_.tet_labels);
+    tets_.faces = std::move(file_.triangles);
+    has_faces_ = !tets_.faces.empty();
+  }
+
+  /// Some programs number a tet's nodes the other way, or let normals point inwards; a mirrored frame does the same. What
+  /// is the same everywhere is no defect.
+  void turn_round() {
+    if (!tets_.tets.empty()) {
+      std::size_t negative = 0, positive = 0;
+      for (const auto& t : tets_.tets) {
+        const int sign = exact_orientation(tets_.points[t[0]], tets_.points[t[1]], tets_.points[t[2]], tets_.points[t[3]]);
+        negative += sign < 0, positive += sign > 0;
+      }
+      if (negative > positive) {
+        for (auto& t : tets_.tets) std::swap(t[2], t[3]);
+        warn("most tetrahedra (" + std::to_string(negative) + " of " + std::to_string(tets_.tets.size()) +
+             ") number their nodes the other way round, as a mirrored frame does; all were turned, and the rest counts as inverted");
+      }
+      surface_.points = tets_.points;
+      surface_.triangles = faces_of_tets(tets_);
+      // Faces of the file that all run the other way follow their tets.
+      if (has_faces_) turn_faces();
+      else tets_.faces = surface_.triangles;
+    } else {
+      double volume = 0;
+      const Vec3 o = surface_.points.empty() ? Vec3{} : surface_.points[0];
+      for (const InterfaceTriangle& t : surface_.triangles) {
+        const Vec3 a = surface_.points[t.v[0]] - o, b = surface_.points[t.v[1]] - o, c = surface_.points[t.v[2]] - o;
+        const double part = dot(a, cross(b, c)) / 6;
+        volume += (t.below != 0 ? part : 0) - (t.above != 0 ? part : 0);
+      }
+      if (volume < 0) {
+        for (InterfaceTriangle& t : surface_.triangles) std::swap(t.v[1], t.v[2]);
+        warn("the triangles face inwards, as in a mirrored frame: all were turned round");
+      }
+    }
+  }
+
+  void turn_faces() {
+    std::map<std::array<std::int32_t, 3>, const InterfaceTriangle*> known;
+    for (const InterfaceTriangle& t : surface_.triangles) {
+      auto key = t.v;
+      std::sort(key.begin(), key.end());
+      known[key] = &t;
+    }
+    std::size_t against = 0, with = 0;
+    for (const InterfaceTriangle& t : tets_.faces) {
+      auto key = t.v;
+      std::sort(key.begin(), key.end());
+      const auto it = known.find(key);
+      if (it == known.end()) continue;
+      const auto& w = it->second->v;
+      const std::size_t at = static_cast<std::size_t>(std::find(w.begin(), w.end(), t.v[0]) - w.begin());
+      const bool same = (w[(at + 1) % 3] == t.v[1]) == (it->second->below == t.below);
+      (same ? with : against) += 1;
+    }
+    if (against <= with) return;
+    for (InterfaceTriangle& t : tets_.faces) std::swap(t.v[1], t.v[2]);
+    warn("the interface triangles run against the tetrahedra, as in a mirrored frame: all were turned round");
+  }
+
+  // ---- frame
+
+  static Frame turned() {  // half a revolution about z
+    Frame f;
+    f.axes = {Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}};
+    return f;
+  }
+
+  void take_frame() {
+    JudgedMesh& m = *report_.mesh;
+    const bool anatomical = against_ && against_->input.volume && against_->input.volume->anatomical;
+    const bool known = anatomical || !against_;
+    m.space = known ? "lps" : "none";
+    world_ = known ? WorldSpace::lps : WorldSpace::none;
+    if (against_ && !anatomical) {
+      m.space_reason = "the input has no anatomy: coordinates are taken as they are";
+      if (o_.mesh_space == "ras") fail_usage("--mesh-space ras needs an input with anatomical axes", against_->input.path, "leave --mesh-space out");
+      if (against_->input.volume && overlap(Frame{}) == 0) no_overlap("as it is", {});
+      return;
+    }
+    const std::optional<WorldSpace> told = o_.mesh_space == "lps" ? std::optional(WorldSpace::lps) : o_.mesh_space == "ras" ? std::optional(WorldSpace::ras) : file_.space;
+    if (!against_) {
+      m.space = told == WorldSpace::ras ? "ras" : told == WorldSpace::lps ? "lps" : "none";
+      world_ = told.value_or(WorldSpace::none);
+      m.space_reason = o_.mesh_space != "auto" ? "as told by --mesh-space" : told ? "the file says so" : "the file does not say, and there are no labels to compare with";
+      return;
+    }
+    if (told) {
+      const std::string who = o_.mesh_space != "auto" ? "--mesh-space tells" : "the file tells";
+      const bool is_ras = told == WorldSpace::ras;
+      const double dice = overlap(is_ras ? turned() : Frame{});
+      m.space = is_ras ? "ras" : "lps";
+      m.space_reason = who + " " + (is_ras ? "RAS" : "LPS") + " (Dice " + percent(dice) + ")";
+      if (dice < 0.5) {
+        const double other = overlap(is_ras ? Frame{} : turned());
+        if (other > 0.5 && other > 2 * dice) {
+          wrong_frame_ = "the mesh is taken as " + std::string(is_ras ? "RAS" : "LPS") + " because " + who + " so, but as " + (is_ras ? "LPS" : "RAS") +
+                         " it would fit: Dice " + percent(other) + " instead of " + percent(dice);
+        } else if (dice == 0) {
+          no_overlap(is_ras ? "as RAS" : "as LPS", is_ras ? "LPS: " + percent(other) : "RAS: " + percent(other));
+        }
+      }
+      if (is_ras) to_lps();
+      return;
+    }
+    const double lps = overlap(Frame{}), ras = overlap(turned());
+    if (lps == 0 && ras == 0) no_overlap("neither as LPS nor as RAS", {});
+    const bool is_ras = ras > lps;
+    m.space = is_ras ? "ras" : "lps";
+    m.space_reason = "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
+    if (std::abs(lps - ras) < 0.05) warn("the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space");
+    if (is_ras) to_lps();
+  }
+
+  void to_lps() {
+    const auto turn = [](std::vector<Vec3>& points) {
+      for (Vec3& p : points) p.x = -p.x, p.y = -p.y;
+    };
+    turn(surface_.points);
+    turn(tets_.points);
+  }
+
+  double overlap(const Frame& frame) const { return against_->meter ? against_->meter->measure(surface_, frame, 48).dice_of_all() : 0; }
+
+  /// Names the usual mistakes that would explain it.
+  [[noreturn]] void no_overlap(const std::string& tried, const std::string& other) const {
+    std::string hint = "check the frame, the unit and which labels the mesh was made from";
+    Frame metres, image;
+    for (int k = 0; k < 3; ++k) metres.axes[k] = 1000.0 * metres.axes[k];
+    const LabelVolume& v = *against_->input.volume;
+    image.origin = v.origin_mm;
+    image.axes = v.axes;
+    const struct {
+      const char* text;
+      Frame frame;
+    } guesses[] = {{"it would fit in metres: scale it by 1000", metres}, {"it would fit in the image's own axes and millimetres: add the origin and direction of the labels", image}};
+    for (const auto& g : guesses)
+      if (overlap(g.frame) > 0.5) hint = g.text;
+    fail_input("the mesh and the labels do not overlap (" + tried + (other.empty() ? "" : "; " + other) + ")", file_.path + " and " + against_->input.path, hint);
+  }
+
+  // ---- labels
+
+  void match_labels() {
+    std::set<Label> of_mesh;
+    for (const InterfaceTriangle& t : surface_.triangles) of_mesh.insert(t.below), of_mesh.insert(t.above);
+    of_mesh.erase(0);
+    if (!against_) {
+      for (const Label l : of_mesh) {
+        LabelReport row;
+        row.label = l;
+        for (const LabelInfo& n : file_.names)
+          if (n.number == l) row.name = n.name;
+        report_.labels.push_back(row);
+      }
+      report_.mesh->labels = source_text() + ": " + list(of_mesh);
+      return;
+    }
+    labels_ = against_->input.labels;
+    std::map<Label, Label> to;  // label of the mesh to that of the input
+    if (file_.label_source == LabelSource::none) single_surface(to);
+    else if (file_.label_source == LabelSource::sets && file_.numbers_from_names) by_name(of_mesh, to);
+    else by_number(of_mesh, to);
+    std::string text = source_text();
+    for (const auto& [from, target] : to)
+      if (from != target && file_.label_source != LabelSource::none && to.size() < 12) text += ", " + std::to_string(from) + " stands for " + std::to_string(target);
+    report_.mesh->labels = text + matched_;
+    rename(to);
+    for (const LabelInfo& l : labels_) {
+      LabelReport row;
+      row.label = l.number;
+      row.name = l.name;
+      report_.labels.push_back(row);
+    }
+  }
+
+  std::string source_text() const {
+    switch (file_.label_source) {
+      case LabelSource::none: return "no labels in the file";
+      case LabelSource::sides: return "labels from " + file_.label_array;
+      case LabelSource::array: return "labels from array '" + file_.label_array + "'";
+      case LabelSource::sets: return "labels from sets";
+    }
+    return "";
+  }
+
+  static std::string list(const std::set<Label>& labels) {
+    std::string text;
+    std::size_t n = 0;
+    for (const Label l : labels) {
+      if (++n > 12) return text + " and " + std::to_string(labels.size() - 12) + " more";
+      text += (n > 1 ? ", " : "") + std::to_string(l);
+    }
+    return text;
+  }
+
+  bool asked(Label label) const {
+    return std::any_of(labels_.begin(), labels_.end(), [&](const LabelInfo& l) { return l.number == label; });
+  }
+  void keep_only(Label label) {
+    labels_.erase(std::remove_if(labels_.begin(), labels_.end(), [&](const LabelInfo& l) { return l.number != label; }), labels_.end());
+  }
+
+  /// No labels in the file: it stands for the only label that is asked for, the one that it fits best, or all together.
+  void single_surface(std::map<Label, Label>& to) {
+    if (labels_.size() == 1) {
+      to[1] = labels_[0].number;
+      matched_ = ", it stands for label " + std::to_string(to[1]);
+      return;
+    }
+    if (!against_->meter) fail_input("the mesh has one surface and the contours have " + std::to_string(labels_.size()) + " labels", file_.path, "say which with --label");
+    const LabelOverlap o = against_->meter->measure(surface_);
+    std::size_t best = 1;
+    for (std::size_t l = 2; l < o.input_centres.size(); ++l)
+      if (o.dice(0, l) > o.dice(0, best)) best = l;
+    const double one = o.dice(0, best), all = o.dice_of_all();
+    if (all > one) {
+      union_ = true;
+      to[1] = labels_[0].number;
+      matched_ = ", it stands for all labels together (Dice " + percent(all) + "; best single label " + std::to_string(labels_[best - 1].number) + ": " + percent(one) + ")";
+    } else {
+      to[1] = labels_[best - 1].number;
+      matched_ = ", it fits label " + std::to_string(to[1]) + " best (Dice " + percent(one) + "; all together " + percent(all) + ")";
+    }
+    warn("the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ + "; --label tells which");
+    if (!union_) keep_only(to[1]);
+  }
+
+  void by_number(const std::set<Label>& of_mesh, std::map<Label, Label>& to) {
+    std::set<Label> shared, unknown;
+    for (const Label l : of_mesh) (asked(l) ? shared : unknown).insert(l);
+    if (shared.empty()) {
+      by_overlap(of_mesh, to, "no label number of the mesh (" + list(of_mesh) + ") is one of the input");
+      return;
+    }
+    for (const Label l : of_mesh) to[l] = asked(l) ? l : 0;
+    forget(unknown);
+    if (of_mesh.size() == 1 && labels_.size() > 1) {
+      warn("the mesh has label " + list(of_mesh) + " alone: only that label is judged");
+      keep_only(*of_mesh.begin());
+    }
+  }
+
+  /// Labels of the mesh that the input does not have, or that were not asked for, are background.
+  void forget(const std::set<Label>& unknown) {
+    if (!unknown.empty()) warn("labels of the mesh that are not asked for or not in the input are taken as background: " + list(unknown));
+  }
+
+  void by_name(const std::set<Label>& of_mesh, std::map<Label, Label>& to) {
+    std::map<std::string, Label> known;
+    for (const LabelInfo& l : labels_) {
+      if (!l.name.empty()) known[plain(l.name)] = l.number;
+      known.emplace(plain("label_" + std::to_string(l.number)), l.number);
+    }
+    std::set<Label> unknown;
+    for (const LabelInfo& n : file_.names) {
+      const auto it = known.find(plain(n.name));
+      if (it != known.end()) to[n.number] = it->second;
+    }
+    for (const Label l : of_mesh)
+      if (!to.count(l)) unknown.insert(l);
+    if (unknown.size() == of_mesh.size()) {
+      to.clear();
+      by_overlap(of_mesh, to, "no set of the mesh has the name of a label of the input");
+      return;
+    }
+    for (const Label l : unknown) to[l] = 0;
+    forget(unknown);
+  }
+
+  /// Each label of the mesh stands for the one that it covers best.
+  void by_overlap(const std::set<Label>& of_mesh, std::map<Label, Label>& to, const std::string& why) {
+    if (!against_->meter) fail_input(why, file_.path, "renumber the labels of the mesh");
+    const LabelOverlap o = against_->meter->measure(surface_);
+    std::string text;
+    for (std::size_t m = 0; m < o.mesh_labels.size(); ++m) {
+      std::size_t best = 1;
+      for (std::size_t l = 2; l < o.input_centres.size(); ++l)
+        if (o.dice(m, l) > o.dice(m, best)) best = l;
+      const Label target = o.dice(m, best) > 0 ? labels_[best - 1].number : 0;
+      to[o.mesh_labels[m]] = target;
+      if (m < 12) text += (m ? ", " : "") + std::to_string(o.mesh_labels[m]) + " as " + std::to_string(target) + " (Dice " + percent(o.dice(m, best)) + ")";
+    }
+    warn(why + ": its labels are taken for those that they overlap best: " + text);
+    if (of_mesh.size() == 1 && labels_.size() > 1 && to.begin()->second != 0) keep_only(to.begin()->second);
+  }
+
+  void rename(const std::map<Label, Label>& to) {
+    const auto of = [&](Label l) {
+      const auto it = to.find(l);
+      return it == to.end() ? 0 : it->second;
+    };
+    const auto apply = [&](std::vector<InterfaceTriangle>& triangles) {
+      for (InterfaceTriangle& t : triangles) t.below = of(t.below), t.above = of(t.above);
+      triangles.erase(std::remove_if(triangles.begin(), triangles.end(), [](const InterfaceTriangle& t) { return t.below == t.above; }), triangles.end());
+    };
+    const bool same = std::all_of(to.begin(), to.end(), [](const auto& p) { return p.first == p.second; });
+    if (same) return;
+    apply(surface_.triangles);
+    if (tets_.tets.empty()) return;
+    apply(tets_.faces);
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < tets_.tets.size(); ++t) {
+      const Label l = of(tets_.labels[t]);
+      if (l == 0) continue;
+      tets_.tets[kept] = tets_.tets[t];
+      tets_.labels[kept++] = l;
+    }
+    tets_.tets.resize(kept), tets_.labels.resize(kept);
+  }
+
+  // ---- checks
+
+  void check() {
+    SurfaceCheckOptions surface;
+    surface.threads = o_.threads;
+    surface.list_limit = 20000;
+    report_.surface = check_surface(surface_, surface);
+    report_.surface_level = "";
+    if (!tets_.tets.empty()) {
+      VolumeCheckOptions volume;
+      volume.threads = o_.threads;
+      report_.volume = check_volume(tets_, volume);
+      const bool fine = report_.volume->inverted == 0 && report_.volume->conforms && report_.surface->open_edges == 0 && report_.surface->self_intersections == 0;
+      report_.closure = fine ? "verified" : "failed";
+    }
+    ThicknessOptions thick;
+    thick.threads = o_.threads;
+    thick.elements = report_.limits.thin_elements;
+    thickness_ = check_thickness(surface_, thick);
+    if (against_ && against_->input.volume) check_against_labels();
+    fill_rows();
+  }
+
+  void check_against_labels() {
+    const LabelVolume* volume = &*against_->input.volume;
+    LabelVolume selected;
+    if (union_ || labels_.size() + 1 < volume->labels.size()) {
+      std::vector<std::size_t> keep;
+      for (std::size_t k = 1; k < volume->labels.size(); ++k)
+        if (union_ || asked(volume->labels[k].number)) keep.push_back(k);
+      selected = select_labels(*volume, keep, union_);
+      if (union_) {
+        labels_.assign(selected.labels.begin() + 1, selected.labels.end());
+        for (InterfaceTriangle& t : surface_.triangles) t.below = t.below ? labels_[0].number : 0, t.above = t.above ? labels_[0].number : 0;
+        report_.labels.resize(1);
+        report_.labels[0].label = labels_[0].number;
+        report_.labels[0].name = "all labels together";
+      }
+      volume = &selected;
+    }
+    const std::vector<std::size_t> counts = count_voxels(*volume);
+    for (LabelReport& row : report_.labels)
+      for (std::size_t k = 1; k < volume->labels.size(); ++k)
+        if (volume->labels[k].number == row.label) row.input_volume_mm3 = static_cast<double>(counts[k]) * volume->voxel_volume_mm3();
+    FidelityOptions options;
+    options.threads = o_.threads;
+    options.stack_axis = against_->axis;
+    fidelity_ = check_fidelity(surface_, *volume, options);
+  }
+
+  void fill_rows() {
+    for (LabelReport& row : report_.labels) {
+      for (const LabelSurface& s : report_.surface->labels)
+        if (s.label == row.label) {
+          row.closed = s.closed;
+          row.components = s.components;
+          row.euler = s.euler;
+          if (s.closed) row.genus = s.genus;
+          row.surface_volume_mm3 = s.volume_mm3;
+          row.surface_area_mm2 = s.area_mm2;
+          row.angle_min_deg = s.angle_min_deg;
+        }
+      if (report_.volume)
+        for (const LabelTets& t : report_.volume->labels)
+          if (t.label == row.label) {
+            row.tets = t.tets;
+            row.tet_volume_mm3 = t.volume_mm3;
+            row.dihedral_min_deg = t.dihedral_min_deg;
+            row.dihedral_max_deg = t.dihedral_max_deg;
+          }
+      for (const LabelThickness& t : thickness_)
+        if (t.label == row.label) {
+          row.thin_share = t.thin_share;
+          row.thickness_p5_mm = t.p5_mm;
+        }
+      for (const LabelFidelity& f : fidelity_)
+        if (f.label == row.label) {
+          row.dice = f.dice;
+          row.distance_mm = f.distance_mm;
+          row.reverse_distance_mm = f.reverse_distance_mm;
+          row.input_components = f.input_components;
+        }
+    }
+  }
+
+  void verdicts() {
+    JudgeInput in;
+    in.surface = &*report_.surface;
+    if (report_.volume) in.volume = &*report_.volume;
+    in.thickness = &thickness_;
+    for (const LabelReport& row : report_.labels) in.labels.push_back({row.label, row.name});
+    DefectOptions where;
+    where.poor_angle_deg = report_.limits.angle_warn_deg;
+    where.poor_dihedral_deg = report_.limits.dihedral_warn_deg;
+    if (!fidelity_.empty()) {
+      in.fidelity = &fidelity_;
+      for (const LabelReport& row : report_.labels) in.input_volume_mm3.push_back(row.input_volume_mm3.value_or(0));
+      const LabelVolume& v = *against_->input.volume;
+      in.pixel_mm = 1e300, in.voxel_mm = 0;
+      for (int k = 0; k < 3; ++k) {
+        if (k != against_->axis) in.pixel_mm = std::min(in.pixel_mm, v.spacing_mm[k]);
+        in.voxel_mm = std::max(in.voxel_mm, v.spacing_mm[k]);
+      }
+      where.section_of = [&v, axis = against_->axis](const Vec3& p) -> std::optional<int> {
+        const double at = dot(p - v.origin_mm, v.axes[axis]) / v.spacing_mm[axis];
+        return static_cast<int>(std::clamp(std::round(at), 0.0, v.size[axis] - 1.0));
+      };
+    } else if (against_ && against_->input.sections) {
+      const Stack& s = *against_->input.sections;
+      where.section_of = [&s](const Vec3& p) -> std::optional<int> {
+        std::size_t best = 0;
+        for (std::size_t k = 1; k < s.sections.size(); ++k)
+          if (std::abs(s.sections[k].z_mm - s.frame.to_stack(p).z) < std::abs(s.sections[best].z_mm - s.frame.to_stack(p).z)) best = k;
+        return static_cast<int>(best);
+      };
+    }
+    report_.verdicts = judge(in, report_.limits);
+    report_.defects = find_defects(surface_, *report_.surface, tets_.tets.empty() ? nullptr : &tets_, in.volume, in.fidelity, where);
+    if (!wrong_frame_.empty()) frame_verdict();
+  }
+
+  void frame_verdict() {
+    Verdict v;
+    v.id = "frame", v.title = "Frame", v.status = Status::fail;
+    v.figure = report_.mesh->space == "ras" ? "taken as RAS, fits as LPS" : "taken as LPS, fits as RAS";
+    v.limit = "must fit";
+    v.explanation = wrong_frame_ + ".";
+    const auto at = std::find_if(report_.verdicts.begin(), report_.verdicts.end(), [](const Verdict& o) { return !o.validity; });
+    report_.verdicts.insert(at, v);
+    Defect d;
+    d.kind = "wrong_frame";
+    Vec3 low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
+    for (const Vec3& p : surface_.points) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    d.where = 0.5 * (low + high);
+    d.text = wrong_frame_;
+    report_.defects.insert(report_.defects.begin(), std::move(d));
+  }
+
+  const ValidateRunOptions& o_;
+  Against* against_;
+  RunReport report_;
+  StageClock clock_;
+  MeshFile file_;
+  InterfaceComplex surface_;  // LPS once the frame is known
+  TetMesh tets_;
+  bool has_faces_ = false, union_ = false;
+  WorldSpace world_ = WorldSpace::lps;
+  std::vector<LabelInfo> labels_;  // of the input that are judged
+  std::string matched_, wrong_frame_;
+  std::vector<LabelThickness> thickness_;
+  std::vector<LabelFidelity> fidelity_;
+};
+
+void check_names(const ValidateRunOptions& o) {
+  for (const std::string& path : o.reports)
+    if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
+  if (o.mesh_space != "auto" && o.mesh_space != "lps" && o.mesh_space != "ras")
+    fail_usage("unknown space '" + o.mesh_space + "'", "--mesh-space", "choose lps, ras or auto");
+}
+
+void describe_input(const Against& against, RunReport& report) {
+  report.input.path = against.input.path;
+  report.input.kind = against.input.kind;
+  report.warnings = against.input.warnings;
+  report.input.axis = std::string(1, "xyz"[against.axis]);
+  if (against.input.volume) {
+    const LabelVolume& v = *against.input.volume;
+    report.input.dimensions = v.size;
+    report.input.spacing_mm = v.spacing_mm;
+    report.input.sections = static_cast<std::size_t>(v.size[against.axis]);
+    report.input.space = v.anatomical ? "lps" : "none";
+  } else {
+    report.input.sections = against.input.sections->sections.size();
+    report.input.space = "none";
+  }
+}
+
+}  // namespace
+
+std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progress) {
+  check_names(o);
+  RunReport start;
+  start.command = "validate";
+  start.version = o.version;
+  start.options = o.option_texts;
+  start.input.space = "none";
+  if (o.limits) start.limits = *o.limits;
+  std::optional<Against> against;
+  {
+    StageClock clock(progress, start.stages);
+    if (o.against)
+      clock.run("read", [&] {
+        against.emplace();
+        against->input = read_input(*o.against);
+        if (against->input.volume) {
+          against->axis = stacking_axis(*against->input.volume, o.axis);
+          against->meter.emplace(*against->input.volume, against->axis, o.threads);
+        }
+        describe_input(*against, start);
+      });
+    if (!o.reports.empty()) clock.run("provenance", [&] { start.provenance = find_provenance(o.against ? o.against->paths : std::vector<std::string>()); });
+  }
+  std::vector<RunReport> reports;
+  AtomicFiles files;
+  for (const std::string& path : o.meshes) {
+    ValidateRun run(o, against ? &*against : nullptr, start, progress);
+    reports.push_back(run.run(path));
+    run.write_defects(files, reports.back());
+    reports.back().peak_rss_mb = peak_memory_mb();
+  }
+  for (const std::string& path : o.reports) {
+    const std::string json = reports.size() == 1 ? to_json(reports[0]) : to_json(reports);
+    files.write(path, [&](std::FILE* f) { std::fwrite(json.data(), 1, json.size(), f); });
+  }
+  files.commit();
+  return reports;
+}
+
+}  // namespace stackmesh

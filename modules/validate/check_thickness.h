@@ -1,0 +1,27 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "model/complex.h"
+
+namespace stackmesh {
+
+/// How thin a label is, seen along the inward normals of its surface.
+struct LabelThickness {
+  Label label = 0;
+  double thin_share = 0;  ///< of its area: thickness below `elements` edges of the triangle it is seen from
+  double p5_mm = 0;       ///< 95 % of the area are thicker
+  Vec3 thinnest;          ///< where it is thinnest, compared with the triangle
+  double thinnest_mm = 0;
+};
+
+struct ThicknessOptions {
+  double elements = 2;
+  std::size_t samples = 10000;  ///< most triangles a label is seen from, evenly chosen
+  int threads = 0;
+};
+
+/// A row for each label of a closed complex, ascending. @throws Error(input) as check_surface does.
+std::vector<LabelThickness> check_thickness(const InterfaceComplex& complex, const ThicknessOptions& options = {});
+
+}  // namespace stackmesh
