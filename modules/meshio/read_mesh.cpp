@@ -85,6 +85,8 @@ class MeshFinisher {
       const Vec3& v = raw_.points[p];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
         fail_input("a coordinate is not a finite number", raw_.path + ", point " + std::to_string(p), "mend the mesh where it was made");
+      if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e9)
+        fail_input("a coordinate lies beyond 1,000 km", raw_.path + ", point " + std::to_string(p), "give the mesh in mm");
     }
     if (raw_.points.size() > 2000000000) fail_input("the mesh has more than 2,000,000,000 points", raw_.path, "split it");
     const auto need = [&](const char* kind, std::size_t i, std::int32_t v) {

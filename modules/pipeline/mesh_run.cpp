@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "interpolate/virtual_slices.h"
+#include "pipeline/complete_report.h"
+#include "pipeline/provenance.h"
 #include "pipeline/stage_clock.h"
 #include "report/html_report.h"
 #include "pipeline/virtual_sections.h"
@@ -299,22 +301,19 @@ class MeshRun {
     if (wants_fidelity() && input_.volume) judge_fidelity();
     for (const LabelReport& row : report_.labels)
       if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
-    give_verdicts();
+    if (!o_.reports.empty()) give_verdicts();
   }
 
   void give_verdicts() {
-    JudgeInput in;
-    in.surface = &*report_.surface;
-    if (report_.volume) in.volume = &*report_.volume;
-    in.labels = input_.labels;
-    if (!fidelity_.empty()) {
-      in.fidelity = &fidelity_;
-      for (const LabelReport& row : report_.labels) in.input_volume_mm3.push_back(row.input_volume_mm3.value_or(0));
-      const auto& spacing = input_.volume->spacing_mm;
-      in.pixel_mm = pixel_mm_;
-      in.voxel_mm = *std::max_element(spacing.begin(), spacing.end());
-    }
-    report_.verdicts = judge(in, report_.limits);
+    Judged j;
+    j.surface = &surface_;
+    if (mesh_) j.mesh = &*mesh_;
+    if (input_.volume) j.volume = &*input_.volume;
+    j.axis = axis_;
+    if (!fidelity_.empty()) j.fidelity = &fidelity_;
+    j.threads = o_.threads;
+    complete_report(report_, j);
+    report_.provenance = find_provenance(o_.input.paths);
   }
 
   void judge_fidelity() {

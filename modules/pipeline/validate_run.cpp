@@ -8,10 +8,9 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/stage_clock.h"
-#include "report/comparison.h"
-#include "validate/check_thickness.h"
 #include "validate/defects.h"
 #include "validate/exact.h"
 #include "validate/overlap.h"
@@ -57,6 +56,7 @@ class ValidateRun {
     clock_.run("validate", [&] {
       turn_round();
       take_frame();
+      if (mirrored_) turn_round();
       match_labels();
       check();
       verdicts();
@@ -210,6 +210,7 @@ class ValidateRun {
       return;
     }
     const double lps = overlap(Frame{}), ras = overlap(turned());
+    if (std::max(lps, ras) < 0.5 && take_mirror(std::max(lps, ras))) return;
     if (lps == 0 && ras == 0) no_overlap("neither as LPS nor as RAS", {});
     const bool is_ras = ras > lps;
     m.space = is_ras ? "ras" : "lps";
@@ -218,12 +219,32 @@ class ValidateRun {
     if (is_ras) to_lps();
   }
 
-  void to_lps() {
-    const auto turn = [](std::vector<Vec3>& points) {
-      for (Vec3& p : points) p.x = -p.x, p.y = -p.y;
-    };
-    turn(surface_.points);
-    turn(tets_.points);
+  void to_lps() { scale(-1, -1, 1); }
+
+  void scale(double x, double y, double z) {
+    for (std::vector<Vec3>* points : {&surface_.points, &tets_.points})
+      for (Vec3& p : *points) p = {x * p.x, y * p.y, z * p.z};
+  }
+
+  /// Some programs negate one axis. It is judged in the frame that fits, and said.
+  bool take_mirror(double otherwise) {
+    const struct {
+      const char* text;
+      double x, y, z;
+    } mirrors[] = {{"RPS (x negated)", -1, 1, 1}, {"LAS (y negated)", 1, -1, 1}, {"LPI (z negated)", 1, 1, -1}, {"RAI (all negated)", -1, -1, -1}};
+    for (const auto& m : mirrors) {
+      Frame f;
+      f.axes = {Vec3{m.x, 0, 0}, Vec3{0, m.y, 0}, Vec3{0, 0, m.z}};
+      const double dice = overlap(f);
+      if (dice < 0.5 || dice < 2 * otherwise) continue;
+      scale(m.x, m.y, m.z);
+      mirrored_ = true;
+      report_.mesh->space = m.text;
+      report_.mesh->space_reason = "the file does not say; it fits only mirrored (Dice " + percent(dice) + ", at most " + percent(otherwise) + " as LPS or RAS)";
+      wrong_frame_ = "the mesh is a mirror image: it fits the labels only as " + std::string(m.text) + ", Dice " + percent(dice) + "; all else is judged in that frame";
+      return true;
+    }
+    return false;
   }
 
   double overlap(const Frame& frame) const { return against_->meter ? against_->meter->measure(surface_, frame, 48).dice_of_all() : 0; }
@@ -430,12 +451,7 @@ class ValidateRun {
       const bool fine = report_.volume->inverted == 0 && report_.volume->conforms && report_.surface->open_edges == 0 && report_.surface->self_intersections == 0;
       report_.closure = fine ? "verified" : "failed";
     }
-    ThicknessOptions thick;
-    thick.threads = o_.threads;
-    thick.elements = report_.limits.thin_elements;
-    thickness_ = check_thickness(surface_, thick);
     if (against_ && against_->input.volume) check_against_labels();
-    fill_rows();
   }
 
   void check_against_labels() {
@@ -465,81 +481,25 @@ class ValidateRun {
     fidelity_ = check_fidelity(surface_, *volume, options);
   }
 
-  void fill_rows() {
-    for (LabelReport& row : report_.labels) {
-      for (const LabelSurface& s : report_.surface->labels)
-        if (s.label == row.label) {
-          row.closed = s.closed;
-          row.components = s.components;
-          row.euler = s.euler;
-          if (s.closed) row.genus = s.genus;
-          row.surface_volume_mm3 = s.volume_mm3;
-          row.surface_area_mm2 = s.area_mm2;
-          row.angle_min_deg = s.angle_min_deg;
-        }
-      if (report_.volume)
-        for (const LabelTets& t : report_.volume->labels)
-          if (t.label == row.label) {
-            row.tets = t.tets;
-            row.tet_volume_mm3 = t.volume_mm3;
-            row.dihedral_min_deg = t.dihedral_min_deg;
-            row.dihedral_max_deg = t.dihedral_max_deg;
-          }
-      for (const LabelThickness& t : thickness_)
-        if (t.label == row.label) {
-          row.thin_share = t.thin_share;
-          row.thickness_p5_mm = t.p5_mm;
-        }
-      for (const LabelFidelity& f : fidelity_)
-        if (f.label == row.label) {
-          row.dice = f.dice;
-          row.distance_mm = f.distance_mm;
-          row.reverse_distance_mm = f.reverse_distance_mm;
-          row.input_components = f.input_components;
-        }
-    }
-  }
-
   void verdicts() {
-    JudgeInput in;
-    in.surface = &*report_.surface;
-    if (report_.volume) in.volume = &*report_.volume;
-    in.thickness = &thickness_;
-    for (const LabelReport& row : report_.labels) in.labels.push_back({row.label, row.name});
-    DefectOptions where;
-    where.poor_angle_deg = report_.limits.angle_warn_deg;
-    where.poor_dihedral_deg = report_.limits.dihedral_warn_deg;
-    if (!fidelity_.empty()) {
-      in.fidelity = &fidelity_;
-      for (const LabelReport& row : report_.labels) in.input_volume_mm3.push_back(row.input_volume_mm3.value_or(0));
-      const LabelVolume& v = *against_->input.volume;
-      in.pixel_mm = 1e300, in.voxel_mm = 0;
-      for (int k = 0; k < 3; ++k) {
-        if (k != against_->axis) in.pixel_mm = std::min(in.pixel_mm, v.spacing_mm[k]);
-        in.voxel_mm = std::max(in.voxel_mm, v.spacing_mm[k]);
-      }
-      where.section_of = [&v, axis = against_->axis](const Vec3& p) -> std::optional<int> {
-        const double at = dot(p - v.origin_mm, v.axes[axis]) / v.spacing_mm[axis];
-        return static_cast<int>(std::clamp(std::round(at), 0.0, v.size[axis] - 1.0));
-      };
-    } else if (against_ && against_->input.sections) {
-      const Stack& s = *against_->input.sections;
-      where.section_of = [&s](const Vec3& p) -> std::optional<int> {
-        std::size_t best = 0;
-        for (std::size_t k = 1; k < s.sections.size(); ++k)
-          if (std::abs(s.sections[k].z_mm - s.frame.to_stack(p).z) < std::abs(s.sections[best].z_mm - s.frame.to_stack(p).z)) best = k;
-        return static_cast<int>(best);
-      };
+    Judged j;
+    j.surface = &surface_;
+    if (!tets_.tets.empty()) j.mesh = &tets_;
+    if (against_) {
+      if (against_->input.volume) j.volume = &*against_->input.volume;
+      if (against_->input.sections) j.sections = &*against_->input.sections;
+      j.axis = against_->axis;
     }
-    report_.verdicts = judge(in, report_.limits);
-    report_.defects = find_defects(surface_, *report_.surface, tets_.tets.empty() ? nullptr : &tets_, in.volume, in.fidelity, where);
+    if (!fidelity_.empty()) j.fidelity = &fidelity_;
+    j.threads = o_.threads;
+    complete_report(report_, j);
     if (!wrong_frame_.empty()) frame_verdict();
   }
 
   void frame_verdict() {
     Verdict v;
     v.id = "frame", v.title = "Frame", v.status = Status::fail;
-    v.figure = report_.mesh->space == "ras" ? "taken as RAS, fits as LPS" : "taken as LPS, fits as RAS";
+    v.figure = mirrored_ ? "mirrored: " + report_.mesh->space : report_.mesh->space == "ras" ? "taken as RAS, fits as LPS" : "taken as LPS, fits as RAS";
     v.limit = "must fit";
     v.explanation = wrong_frame_ + ".";
     const auto at = std::find_if(report_.verdicts.begin(), report_.verdicts.end(), [](const Verdict& o) { return !o.validity; });
@@ -563,11 +523,10 @@ class ValidateRun {
   MeshFile file_;
   InterfaceComplex surface_;  // LPS once the frame is known
   TetMesh tets_;
-  bool has_faces_ = false, union_ = false;
+  bool has_faces_ = false, union_ = false, mirrored_ = false;
   WorldSpace world_ = WorldSpace::lps;
   std::vector<LabelInfo> labels_;  // of the input that are judged
   std::string matched_, wrong_frame_;
-  std::vector<LabelThickness> thickness_;
   std::vector<LabelFidelity> fidelity_;
 };
 

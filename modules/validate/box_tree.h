@@ -95,17 +95,17 @@ void BoxTree::pairs_of_leaf(std::size_t leaf, Visit visit) const {
 template <class Visit>
 void BoxTree::along_ray(const Vec3& from, const Vec3& along, double reach, Visit visit) const {
   const double o[3] = {from.x, from.y, from.z}, d[3] = {along.x, along.y, along.z};
-  const auto enters = [&](const Box& b) {  // infinite: not within reach
+  const auto enters = [&](const Box& b) {  // where the ray comes in; NaN: not within reach
     double low = 0, high = reach;
     for (int k = 0; k < 3; ++k) {
       if (d[k] == 0) {
-        if (o[k] < b.low[k] || o[k] > b.high[k]) return std::numeric_limits<double>::infinity();
+        if (o[k] < b.low[k] || o[k] > b.high[k]) return std::numeric_limits<double>::quiet_NaN();
         continue;
       }
       const double p = (b.low[k] - o[k]) / d[k], q = (b.high[k] - o[k]) / d[k];
       low = std::max(low, std::min(p, q)), high = std::min(high, std::max(p, q));
     }
-    return low <= high ? low : std::numeric_limits<double>::infinity();
+    return low <= high ? low : std::numeric_limits<double>::quiet_NaN();
   };
   std::size_t stack[128];
   int top = 0;
@@ -119,7 +119,8 @@ void BoxTree::along_ray(const Vec3& from, const Vec3& along, double reach, Visit
         if (enters(boxes_[i]) <= reach) visit(items_[i], &reach);
       continue;
     }
-    const bool left_first = enters(nodes_[2 * node]) <= enters(nodes_[2 * node + 1]);
+    const double left = enters(nodes_[2 * node]), right = enters(nodes_[2 * node + 1]);
+    const bool left_first = left <= right || right != right;
     stack[top++] = left_first ? 2 * node + 1 : 2 * node;
     stack[top++] = left_first ? 2 * node : 2 * node + 1;
   }

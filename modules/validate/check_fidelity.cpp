@@ -246,25 +246,62 @@ void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, co
   for (LabelFidelity& row : rows) keep(row.missing), keep(row.unmatched);
 }
 
-void match_components(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points, const Boundaries& boundaries, const GridWalk& walk,
+/// Pieces that cover no voxel centre of their label, by the component in one of whose voxels their middle lies: (component,
+/// piece), each piece and each component once.
+std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
+                                                               const Boundaries& boundaries, const std::vector<std::int32_t>& row_label,
+                                                               const std::vector<char>& component_lost, const std::vector<char>& piece_lost) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  if (std::count(component_lost.begin(), component_lost.end(), 1) == 0 || std::count(piece_lost.begin(), piece_lost.end(), 1) == 0) return pairs;
+  std::vector<Vec3> sum(piece_lost.size());
+  std::vector<double> corners(piece_lost.size(), 0);
+  for (std::size_t t = 0; t < boundaries.piece.size(); ++t)
+    for (const std::int32_t piece : boundaries.piece[t])
+      if (piece >= 0 && piece_lost[piece])
+        for (const std::int32_t v : complex.triangles[t].v) sum[piece] = sum[piece] + points[v], ++corners[piece];
+  std::vector<char> taken(component_lost.size(), 0);
+  for (std::size_t p = 0; p < piece_lost.size(); ++p) {
+    if (!piece_lost[p] || corners[p] == 0) continue;
+    const Vec3 m = (1 / corners[p]) * sum[p];
+    const long w = std::lround(m.x / runs.spacing_mm[0]), u = std::lround(m.y / runs.spacing_mm[1]), v = std::lround(m.z / runs.spacing_mm[2]);
+    if (u < 0 || u >= runs.size[1] || v < 0 || v >= runs.size[2]) continue;
+    const std::size_t line = static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
+    for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
+      const LabelRun& r = runs.runs[k];
+      if (w < r.begin || w >= r.end || !component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]]) continue;
+      taken[r.component] = 1;
+      pairs.push_back({r.component, static_cast<std::int32_t>(p)});
+    }
+  }
+  return pairs;
+}
+
+void match_components(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
+                      const Boundaries& boundaries, const GridWalk& walk,
                       const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
   std::vector<int> met_by_component(runs.component_label.size(), 0),
       met_by_solid(boundaries.piece_row.size(), 0);
   for (const auto& [component, solid] : walk.meets) ++met_by_component[component], ++met_by_solid[solid];
-  std::vector<char> one_to_one(rows.size() + 1, 1);
   std::vector<char> component_lost(met_by_component.size(), 0), piece_lost(met_by_solid.size(), 0);
+  for (std::size_t c = 0; c < met_by_component.size(); ++c) component_lost[c] = met_by_component[c] == 0;
+  for (std::size_t p = 0; p < met_by_solid.size(); ++p)
+    piece_lost[p] = row_label[boundaries.piece_row[p]] >= 0 && boundaries.piece_volume_mm3[p] > 0 && met_by_solid[walk.solid[p]] == 0;
+  for (const auto& [component, piece] : find_shrunk(runs, complex, points, boundaries, row_label, component_lost, piece_lost)) {
+    component_lost[component] = piece_lost[piece] = 0;
+    ++met_by_component[component], ++met_by_solid[piece];
+    ++rows[runs.component_label[component] - 1].shrunk_components;
+  }
+  std::vector<char> one_to_one(rows.size() + 1, 1);
   for (std::size_t c = 0; c < met_by_component.size(); ++c) {
     LabelFidelity& row = rows[runs.component_label[c] - 1];
     ++row.input_components;
-    row.missing_components += met_by_component[c] == 0;
-    component_lost[c] = met_by_component[c] == 0;
+    row.missing_components += component_lost[c];
     if (met_by_component[c] != 1) one_to_one[runs.component_label[c]] = 0;
   }
   for (std::size_t p = 0; p < met_by_solid.size(); ++p) {
     const std::int32_t label = row_label[boundaries.piece_row[p]];
     if (label < 0) continue;
     if (boundaries.piece_volume_mm3[p] > 0) ++rows[label - 1].components;
-    piece_lost[p] = boundaries.piece_volume_mm3[p] > 0 && met_by_solid[walk.solid[p]] == 0;
     if (met_by_solid[p] > 1) one_to_one[label] = 0;
   }
   for (std::size_t l = 0; l < rows.size(); ++l)

@@ -35,11 +35,12 @@ struct LabelFidelity {
   int input_components = 0;  ///< 6-connected components of the voxels
   int components = 0;        ///< solid pieces of the mesh (see LabelSurface)
   /// Each input component shares correctly labelled voxel centres with exactly one solid piece, and each
-  /// piece with exactly one component.
+  /// piece with exactly one component; or the piece's middle lies in one of its voxels (then it has shrunk).
   bool components_match = false;
-  std::size_t missing_components = 0;  ///< input components none of whose centres is in the label in the mesh
-  std::vector<UnmatchedPart> missing;    ///< those components, largest first, at most 100
-  std::vector<UnmatchedPart> unmatched;  ///< solid pieces of the mesh that share no centre with the label's voxels; at most 100
+  std::size_t missing_components = 0;  ///< input components that no piece stands for
+  std::size_t shrunk_components = 0;   ///< those whose piece covers none of their voxel centres
+  std::vector<UnmatchedPart> missing;    ///< missing components, largest first, at most 100
+  std::vector<UnmatchedPart> unmatched;  ///< solid pieces that stand for no component, largest first, at most 100
   Label best_match = 0;   ///< label of the input that the mesh's label covers best; 0: none
   double best_dice = 0;   ///< with that one
   Vec3 middle;            ///< of the mesh's voxel centres, world, mm

@@ -106,10 +106,11 @@ class Judge {
 
   void components() {
     Verdict& v = add("components", "All components there");
-    std::size_t missing = 0, parts = 0;
+    std::size_t missing = 0, parts = 0, shrunk = 0;
     for (const LabelFidelity& f : *in_.fidelity) {
       missing += f.missing_components;
       parts += static_cast<std::size_t>(f.input_components);
+      shrunk += f.shrunk_components;
       const bool lost = f.missing_components > 0;
       if (!lost && f.components_match) continue;
       v.labels.push_back(f.label);
@@ -118,6 +119,7 @@ class Judge {
     v.figure = missing > 0 ? std::to_string(missing) + " of " + counted(parts, "component", "components") + " missing"
                : v.labels.empty() ? counted(parts, "component", "components") + ", one to one"
                                   : "none missing; " + counted(v.labels.size(), "label does", "labels do") + " not match one to one";
+    if (shrunk > 0) v.figure += " (" + std::to_string(shrunk) + " so small that they cover no voxel centre)";
     v.limit = "none missing; one to one, else a warning";
     v.explanation = v.labels.empty() ? "Every part of a label in the slices (voxels joined over faces) is one part of the mesh."
                                      : "Parts are lost, joined, split or added in " + list(v.labels) + ".";
@@ -142,12 +144,17 @@ class Judge {
   void volume() {
     Verdict& v = add("volume", "Volume kept");
     std::vector<Row> rows;
+    std::vector<Label> open;
     double worst = 0, sum_mesh = 0, sum_input = 0;
     Label worst_label = 0;
     for (std::size_t i = 0; i < in_.labels.size() && i < in_.input_volume_mm3.size(); ++i) {
       const LabelSurface* s = surface_of(in_.labels[i].number);
       const double input = in_.input_volume_mm3[i], mesh = s ? s->volume_mm3 : 0;
       if (!(input > 0)) continue;
+      if (s && !s->closed) {
+        open.push_back(in_.labels[i].number);
+        continue;
+      }
       sum_mesh += mesh, sum_input += input;
       const double error = mesh / input - 1;
       if (worst_label == 0 || std::abs(error) > std::abs(worst)) worst = error, worst_label = in_.labels[i].number;
@@ -161,6 +168,11 @@ class Judge {
     v.figure = rows.size() == 1 ? text_of("%+.2f %%", 100 * worst) : text_of("%+.2f %% in all", 100 * total) + text_of("; worst %+.2f %%, ", 100 * worst) + name(worst_label);
     v.limit = text_of("warn above %g %%", 100 * l_.volume_warn_rel) + text_of(", fail above %g %%", 100 * l_.volume_fail_rel);
     v.explanation = "Volume enclosed by each label's surface against that of its voxels." + blame(v.labels);
+    if (open.empty()) return;
+    if (rows.empty()) v.figure = "not defined: the surface is open";
+    worsen(v.status, Status::warn);
+    v.explanation += " An open surface encloses none: " + list(open) + ".";
+    v.labels.insert(v.labels.end(), open.begin(), open.end());
   }
 
   std::string blame(const std::vector<Label>& labels) const { return labels.empty() ? "" : " Outside: " + list(labels) + "."; }

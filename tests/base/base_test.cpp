@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 
@@ -106,6 +107,30 @@ TEST(Progress, PlainIsALineAStageAndTheOthersAreSilentInAPipe) {
   EXPECT_EQ(plain.rfind("read ", 0), 0U) << plain;
   EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 1) << plain;
   EXPECT_EQ(plain.find('\r'), std::string::npos) << plain;
+}
+
+// The vectors of FIPS 180-4, and lengths about the ends of a block fed in pieces.
+TEST(Sha256, HasThePublishedDigests) {
+  const auto digest = [](const std::string& text) {
+    Sha256 s;
+    s.add(text);
+    return s.hex();
+  };
+  EXPECT_EQ(digest(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(digest("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(digest(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256, DoesNotDependOnThePieces) {
+  for (std::size_t n : {1u, 55u, 56u, 63u, 64u, 65u, 119u, 120u, 128u, 1000u}) {
+    std::string text;
+    for (std::size_t i = 0; i < n; ++i) text += static_cast<char>(i * 7 + 3);
+    Sha256 whole, pieces;
+    whole.add(text);
+    for (std::size_t i = 0; i < n; i += 13) pieces.add(std::string_view(text).substr(i, 13));
+    EXPECT_EQ(whole.hex(), pieces.hex()) << n;
+  }
 }
 
 }  // namespace

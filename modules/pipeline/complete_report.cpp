@@ -1,0 +1,98 @@
+#include "pipeline/complete_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "validate/check_thickness.h"
+#include "validate/defects.h"
+
+namespace stackmesh {
+namespace {
+
+void fill_rows(RunReport& report, const std::vector<LabelThickness>& thickness, const std::vector<LabelFidelity>* fidelity) {
+  for (LabelReport& row : report.labels) {
+    for (const LabelSurface& s : report.surface->labels)
+      if (s.label == row.label) {
+        row.closed = s.closed;
+        row.components = s.components;
+        row.euler = s.euler;
+        if (s.closed) row.genus = s.genus;
+        row.surface_volume_mm3 = s.volume_mm3;
+        row.surface_area_mm2 = s.area_mm2;
+        row.angle_min_deg = s.angle_min_deg;
+      }
+    if (report.volume)
+      for (const LabelTets& t : report.volume->labels)
+        if (t.label == row.label) {
+          row.tets = t.tets;
+          row.tet_volume_mm3 = t.volume_mm3;
+          row.dihedral_min_deg = t.dihedral_min_deg;
+          row.dihedral_max_deg = t.dihedral_max_deg;
+        }
+    for (const LabelThickness& t : thickness)
+      if (t.label == row.label) {
+        row.thin_share = t.thin_share;
+        row.thickness_p5_mm = t.p5_mm;
+      }
+    if (!fidelity) continue;
+    for (const LabelFidelity& f : *fidelity)
+      if (f.label == row.label) {
+        row.dice = f.dice;
+        row.distance_mm = f.distance_mm;
+        row.reverse_distance_mm = f.reverse_distance_mm;
+        row.input_components = f.input_components;
+      }
+  }
+}
+
+std::function<std::optional<int>(const Vec3&)> section_finder(const Judged& j) {
+  if (j.volume)
+    return [&v = *j.volume, axis = j.axis](const Vec3& p) -> std::optional<int> {
+      const double at = dot(p - v.origin_mm, v.axes[axis]) / v.spacing_mm[axis];
+      return static_cast<int>(std::clamp(std::round(at), 0.0, v.size[axis] - 1.0));
+    };
+  if (j.sections && !j.sections->sections.empty())
+    return [&s = *j.sections](const Vec3& p) -> std::optional<int> {
+      const double z = s.frame.to_stack(p).z;
+      std::size_t best = 0;
+      for (std::size_t k = 1; k < s.sections.size(); ++k)
+        if (std::abs(s.sections[k].z_mm - z) < std::abs(s.sections[best].z_mm - z)) best = k;
+      return static_cast<int>(best);
+    };
+  return nullptr;
+}
+
+}  // namespace
+
+void complete_report(RunReport& report, const Judged& j) {
+  ThicknessOptions thick;
+  thick.threads = j.threads;
+  thick.elements = report.limits.thin_elements;
+  const std::vector<LabelThickness> thickness = check_thickness(*j.surface, thick);
+  fill_rows(report, thickness, j.fidelity);
+  JudgeInput in;
+  in.surface = &*report.surface;
+  if (report.volume) in.volume = &*report.volume;
+  in.thickness = &thickness;
+  in.fidelity = j.fidelity;
+  for (const LabelReport& row : report.labels) {
+    in.labels.push_back({row.label, row.name});
+    in.input_volume_mm3.push_back(row.input_volume_mm3.value_or(0));
+  }
+  if (j.volume) {
+    in.pixel_mm = std::numeric_limits<double>::infinity(), in.voxel_mm = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (k != j.axis) in.pixel_mm = std::min(in.pixel_mm, j.volume->spacing_mm[k]);
+      in.voxel_mm = std::max(in.voxel_mm, j.volume->spacing_mm[k]);
+    }
+  }
+  report.verdicts = judge(in, report.limits);
+  DefectOptions where;
+  where.poor_angle_deg = report.limits.angle_warn_deg;
+  where.poor_dihedral_deg = report.limits.dihedral_warn_deg;
+  where.section_of = section_finder(j);
+  report.defects = find_defects(*j.surface, *report.surface, j.mesh, in.volume, j.fidelity, where);
+}
+
+}  // namespace stackmesh

@@ -1,0 +1,27 @@
+#pragma once
+#include <vector>
+
+#include "model/complex.h"
+#include "model/label_volume.h"
+#include "model/stack.h"
+#include "model/tet_mesh.h"
+#include "report/run_report.h"
+
+namespace stackmesh {
+
+/// What a report is about, once surface (and volume) are checked. Pointers may be null.
+struct Judged {
+  const InterfaceComplex* surface = nullptr;  ///< in the frame of the labels, LPS
+  const TetMesh* mesh = nullptr;
+  const LabelVolume* volume = nullptr;  ///< tells pixels and slices
+  int axis = 2;                         ///< along which they are stacked
+  const Stack* sections = nullptr;      ///< of contour input
+  const std::vector<LabelFidelity>* fidelity = nullptr;
+  int threads = 0;
+};
+
+/// Completes a report that holds `surface`, `volume`, `limits` and a row for each label with its number, name and input
+/// volume: fills the rows, measures thickness, gives the verdicts and finds the defects.
+void complete_report(RunReport& report, const Judged& judged);
+
+}  // namespace stackmesh

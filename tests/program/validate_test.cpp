@@ -1,0 +1,183 @@
+// `stackmesh validate` as a user calls it: verdict in words, exit codes, report, limits, bad input.
+#include <cstring>
+
+#include "program.h"
+
+namespace {
+
+using program::Json;
+
+class Validate : public program::ProgramTest {
+ protected:
+  std::string heart_ = program::testdata("heart4.nii.gz");
+  std::string meshed(const std::string& name, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"mesh", heart_, "-o", in(name), "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    program::stackmesh(arguments);
+    return in(name);
+  }
+};
+
+TEST_F(Validate, JudgesOurOwnMeshAndTheReportHasTheContractsFieldsAndMore) {
+  const std::string mesh = meshed("a.vtu");
+  const program::Ended ended = program::stackmesh({"validate", mesh, "--against", heart_, "--report", out("R.json")});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("verdict  "), std::string::npos);
+  EXPECT_EQ(ended.out.find('\x1b'), std::string::npos);  // no colour in a pipe
+  EXPECT_EQ(written(), std::vector<std::string>{"R.json"});
+  const Json r = report();
+  EXPECT_EQ(r["command"], "validate");
+  EXPECT_EQ(r["schema"], 1);
+  for (const char* key : {"stackmesh", "options", "input", "stages", "peak_rss_mb", "surface", "volume", "labels", "warnings", "verdict", "verdicts", "defects", "limits", "provenance", "mesh"})
+    EXPECT_TRUE(r.contains(key)) << key;
+  EXPECT_EQ(r["volume"]["closure"], "verified");
+  EXPECT_EQ(r["labels"].size(), 5u);
+  for (const Json& row : r["labels"]) {
+    EXPECT_TRUE(row["closed"].get<bool>());
+    EXPECT_GT(row["dice"].get<double>(), 0.9);
+    EXPECT_NEAR(row["tet_volume_mm3"].get<double>(), row["surface_volume_mm3"].get<double>(), 1e-6 * row["surface_volume_mm3"].get<double>());
+  }
+  for (const Json& v : r["verdicts"]) {
+    EXPECT_NE(v["status"], "fail") << v;
+    for (const char* key : {"id", "title", "figure", "limit", "explanation"}) EXPECT_FALSE(v[key].get<std::string>().empty()) << v;
+  }
+  // sha256sum of the file
+  const program::Ended sum = program::run({"/usr/bin/sha256sum", heart_});
+  EXPECT_EQ(r["provenance"]["input_sha256"], sum.out.substr(0, 64));
+  EXPECT_EQ(r["mesh"]["sha256"], program::run({"/usr/bin/sha256sum", mesh}).out.substr(0, 64));
+}
+
+TEST_F(Validate, FiguresEqualThoseOfTheRunThatMadeTheMesh) {
+  const std::string mesh = meshed("a.vtu", {"--report", in("made.json")});
+  program::stackmesh({"validate", mesh, "--against", heart_, "--report", out("R.json")});
+  const Json made = Json::parse(program::read_file(in("made.json"))), r = report();
+  for (const char* part : {"surface", "volume"})
+    for (const auto& [key, value] : made[part].items())
+      if (value.is_number() && key != "scaled_jacobian_min") { EXPECT_NEAR(value.get<double>(), r[part][key].get<double>(), 1e-6 * (1 + value.get<double>())) << key; }
+  for (std::size_t i = 0; i < made["labels"].size(); ++i)
+    for (const char* key : {"dice", "surface_volume_mm3", "components", "euler"})
+      EXPECT_NEAR(made["labels"][i][key].get<double>(), r["labels"][i][key].get<double>(), 1e-6 * (1 + made["labels"][i][key].get<double>())) << key;
+}
+
+TEST_F(Validate, LimitsOfAFileDecideBetweenPassAndExit6) {
+  const std::string mesh = meshed("a.vtp");
+  const std::string strict = write("strict.json", "{\"dice_warn\": 1, \"dice_fail\": 1}");
+  const program::Ended ended = program::stackmesh({"validate", mesh, "--against", heart_, "--limits", strict, "--report", out("R.json")});
+  EXPECT_EQ(ended.code, 6);
+  EXPECT_NE(ended.err.find("valid but outside a limit: Fidelity"), std::string::npos) << ended.err;
+  EXPECT_EQ(report()["limits"]["dice_fail"], 1.0);
+  EXPECT_EQ(report()["verdict"], "fail");
+  fails(3, {"validate", mesh, "--limits", write("bad.json", "{\"dise\": 1}")}, {"no limit 'dise'"}, {"R.json"});
+  fails(3, {"validate", mesh, "--limits", write("none.json", "[")}, {"no JSON object"}, {"R.json"});
+}
+
+TEST_F(Validate, AnOpenMeshIsExit4AndItsDefectsAreWritten) {
+  const std::string text = program::read_file(meshed("a.off", {"--label", "1"}));
+  std::string open = text;  // one face less
+  const std::size_t last = open.rfind("3 ", open.size() - 3);
+  open.resize(open.rfind('\n', last) + 1);
+  const std::size_t counts = open.find('\n', open.find('#')) + 1;
+  const std::string line = open.substr(counts, open.find('\n', counts) - counts);
+  const std::size_t blank = line.find(' ');
+  const long faces = std::stol(line.substr(blank + 1));
+  open.replace(counts, line.size(), line.substr(0, blank) + " " + std::to_string(faces - 1) + " 0");
+  const program::Ended ended = program::stackmesh({"validate", write("open.off", open), "--against", heart_, "--label", "1", "--report", out("R.json"), "--write-defects"});
+  EXPECT_EQ(ended.code, 4);
+  EXPECT_NE(ended.err.find("stackmesh: error: the mesh is invalid: Closed: 3 open edges"), std::string::npos) << ended.err;
+  EXPECT_EQ(written(), (std::vector<std::string>{"R.json", "open_off.defects.vtp"}));
+  const Json r = report();
+  ASSERT_GE(r["defects"].size(), 1u);
+  EXPECT_EQ(r["defects"][0]["kind"], "hole");
+  EXPECT_EQ(r["defects"][0]["count"], 3);
+}
+
+TEST_F(Validate, ComparesSeveralMeshesInOneTable) {
+  const std::string fine = meshed("fine.vtu"), coarse = meshed("coarse.vtu", {"--edge-length", "9"});
+  const program::Ended ended = program::stackmesh({"validate", fine, coarse, "--against", heart_, "--report", out("R.json")});
+  EXPECT_TRUE(ended.code == 0 || ended.code == 6) << ended.err;
+  EXPECT_NE(ended.out.find("fine.vtu"), std::string::npos);
+  EXPECT_NE(ended.out.find("* best of its row"), std::string::npos);
+  const Json r = report();
+  ASSERT_EQ(r["meshes"].size(), 2u);
+  for (const Json& row : r["comparison"]["rows"])
+    if (row["id"] == "distance_mean_mm") {
+      EXPECT_LT(row["values"][0].get<double>(), row["values"][1].get<double>());
+      EXPECT_EQ(row["best"], Json::array({0}));
+    }
+}
+
+TEST_F(Validate, AgainstContourFilesFidelityIsNull) {
+  const std::string mesh = in("tube.vtu");
+  program::stackmesh({"mesh", program::testdata("tube.cnt"), "-o", mesh, "--quiet"});
+  const program::Ended ended = program::stackmesh({"validate", mesh, "--against", program::testdata("tube.cnt"), "--report", out("R.json")});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const Json r = report();
+  EXPECT_TRUE(r["labels"][0]["dice"].is_null());
+  EXPECT_TRUE(r["labels"][0]["distance_mm"].is_null());
+  EXPECT_EQ(r["input"]["kind"], "contours");
+}
+
+TEST_F(Validate, AloneItSaysThatFidelityIsNotJudged) {
+  const program::Ended ended = program::stackmesh({"validate", meshed("a.vtp")});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("fidelity is not judged"), std::string::npos);
+}
+
+TEST_F(Validate, BadInputIsOneLineAndExit3) {
+  const std::string heart = heart_;
+  const auto refused = [&](const std::string& name, const std::string& bytes, const std::vector<std::string>& parts) {
+    fails(3, {"validate", write(name, bytes), "--against", heart, "--report", out("R.json")}, parts);
+  };
+  std::string stl(1024, '\0');
+  const unsigned claimed = 40000000;
+  std::memcpy(stl.data() + 80, &claimed, 4);
+  refused("big.stl", stl, {"big.stl", "claims 40000000 triangles"});
+  refused("nan.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n", {"nan.off", "not a finite number"});
+  refused("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", {"no triangle"});
+  refused("hexahedra.inp", "*NODE\n1,0,0,0\n*ELEMENT, TYPE=C3D8\n1,1,1,1,1,1,1,1,1\n", {"hexahedra", "tetrahedra"});
+  refused("far.off", "OFF\n4 4 0\n9000 0 0\n9001 0 0\n9000 1 0\n9000 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", {"do not overlap"});
+  fails(3, {"validate", in("absent.vtu"), "--against", heart}, {"absent.vtu", "cannot be opened"});
+  fails(3, {"validate", write("x.xyz", "1"), "--against", heart}, {"ending"});
+  const std::string mesh = meshed("a.vtu");
+  fails(3, {"validate", mesh, "--against", heart, "--label-array", "density"}, {"no cell array 'density'"});
+  fails(2, {"validate", mesh, "--label", "3"}, {"--against"});
+  fails(2, {"validate", mesh, "--mesh-space", "xyz"}, {"unknown space"});
+  fails(2, {"validate", mesh, "--report", out("R.txt")}, {"unknown ending"});
+  const std::string whole = program::read_file(mesh);
+  fails(3, {"validate", write("cut.vtu", whole.substr(0, whole.size() / 2)), "--against", heart}, {"cut.vtu"});
+}
+
+/// NIfTI with identifying texts in descrip and aux_file, NRRD with keys such as DICOM converters write.
+TEST_F(Validate, NoPatientFieldOfAHeaderReachesAReport) {
+  const program::Ended made = program::run({"/usr/bin/python3", "-c",
+                                            "import sys,nibabel as n,gzip\n"
+                                            "i=n.load(sys.argv[1]); h=i.header.copy(); h['descrip']=b'DOE^JANE 1961-02-03'; h['aux_file']=b'MRN4711'; h['db_name']=b'DOE^JANE'\n"
+                                            "n.save(n.Nifti1Image(i.dataobj[:].astype('u1'),i.affine,h),sys.argv[2])\n"
+                                            "d=i.dataobj[:].astype('u1'); s=d.shape\n"
+                                            "open(sys.argv[3],'wb').write(('NRRD0004\\ntype: uchar\\ndimension: 3\\nspace: left-posterior-superior\\nsizes: %d %d %d\\n"
+                                            "space directions: (1.25,0,0) (0,1.25,0) (0,0,8)\\nencoding: raw\\nspace origin: (0,0,0)\\ncontent: DOE^JANE\\n"
+                                            "DICOM_0010_0010_PatientName:=DOE^JANE\\nDICOM_0010_0030:=19610203\\n# DOE^JANE\\n\\n'%s).encode()+d.tobytes('F'))\n",
+                                            heart_, in("named.nii.gz"), in("named.nrrd")});
+  if (made.code != 0) GTEST_SKIP() << "python3-nibabel is missing: " << made.err;
+  for (const char* name : {"named.nii.gz", "named.nrrd"}) {
+    ASSERT_EQ(program::stackmesh({"mesh", in(name), "-o", out("m.vtu"), "--report", out("M.json")}).code, 0);
+    const program::Ended ended = program::stackmesh({"validate", out("m.vtu"), "--against", in(name), "--report", out("R.json")});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    for (const std::string& text : {program::read_file(out("M.json")), program::read_file(out("R.json")), ended.out, ended.err, program::read_file(out("m.vtu"))})
+      for (const char* secret : {"DOE", "JANE", "1961", "MRN4711"}) EXPECT_EQ(text.find(secret), std::string::npos) << name << ": " << secret;
+  }
+}
+
+TEST_F(Validate, SameFiguresForAnyNumberOfThreads) {
+  const std::string mesh = meshed("a.vtu");
+  Json first;
+  for (const char* threads : {"1", "2", "3"}) {
+    program::stackmesh({"validate", mesh, "--against", heart_, "--threads", threads, "--report", out("R.json"), "--quiet"});
+    Json r = report();
+    for (const char* key : {"stages", "peak_rss_mb", "options", "provenance"}) r.erase(key);
+    if (first.is_null()) first = r;
+    EXPECT_EQ(first, r);
+  }
+}
+
+}  // namespace
