@@ -403,6 +403,7 @@ TetMesh tet_mesh_of(const MeshFile& file) {
   mesh.points = file.points;
   mesh.tets = file.tets;
   mesh.labels = file.tet_labels;
+  mesh.mid = file.midside;
   mesh.faces = file.triangles.empty() ? faces_of_tets(mesh) : file.triangles;
   return mesh;
 }

@@ -29,7 +29,7 @@ struct MeshFile {
   /// tets: only those that carry both labels; all others are left out, as the tets' faces tell more.
   std::vector<InterfaceTriangle> triangles;
   std::vector<std::array<std::int32_t, 4>> tets;
-  std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on edges 01 12 20 03 13 23; empty: linear
+  std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on kTetEdges; empty: linear
   std::vector<Label> tet_labels;                     ///< one per tet
   std::vector<LabelInfo> names;                      ///< of labels the file names, ascending by number
   LabelSource label_source = LabelSource::none;

@@ -94,7 +94,6 @@ class ValidateRun {
     if (!o_.reports.empty()) m.sha256 = sha256_of_file(path);
     report_.mesh = std::move(m);
     for (const std::string& n : file_.notes) warn(n);
-    if (!file_.midside.empty()) warn("tetrahedra of 10 nodes are judged by their four corners");
     if (file_.tets.empty()) {
       surface_.points = std::move(file_.points);
       surface_.triangles = std::move(file_.triangles);
@@ -103,6 +102,7 @@ class ValidateRun {
     tets_.points = std::move(file_.points);
     tets_.tets = std::move(file_.tets);
     tets_.labels = std::move(file_.tet_labels);
+    tets_.mid = std::move(file_.midside);
     tets_.faces = std::move(file_.triangles);
     has_faces_ = !tets_.faces.empty();
   }
@@ -117,7 +117,7 @@ class ValidateRun {
         negative += sign < 0, positive += sign > 0;
       }
       if (negative > positive) {
-        for (auto& t : tets_.tets) std::swap(t[2], t[3]);
+        for (std::size_t t = 0; t < tets_.tets.size(); ++t) stackmesh::turn_round(tets_, t);
         warn("most tetrahedra (" + std::to_string(negative) + " of " + std::to_string(tets_.tets.size()) +
              ") number their nodes the other way round, as a mirrored frame does; all were turned, and the rest counts as inverted");
       }
@@ -431,9 +431,11 @@ class ValidateRun {
       const Label l = of(tets_.labels[t]);
       if (l == 0) continue;
       tets_.tets[kept] = tets_.tets[t];
+      if (!tets_.mid.empty()) tets_.mid[kept] = tets_.mid[t];
       tets_.labels[kept++] = l;
     }
     tets_.tets.resize(kept), tets_.labels.resize(kept);
+    if (!tets_.mid.empty()) tets_.mid.resize(kept);
   }
 
   // ---- checks
@@ -444,6 +446,12 @@ class ValidateRun {
     surface.list_limit = 20000;
     report_.surface = check_surface(surface_, surface);
     report_.surface_level = "";
+    if (!tets_.tets.empty()) {  // the points inside are no vertices of the surface
+      std::vector<char> used(surface_.points.size(), 0);
+      for (const InterfaceTriangle& t : surface_.triangles)
+        for (const std::int32_t v : t.v) used[v] = 1;
+      report_.surface->vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+    }
     if (!tets_.tets.empty()) {
       VolumeCheckOptions volume;
       volume.threads = o_.threads;

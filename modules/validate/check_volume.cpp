@@ -207,7 +207,7 @@ std::size_t count_in_narrow_wedges(const TetMesh& mesh, const std::vector<Shape>
   return count;
 }
 
-void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
+void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& check) {
   std::vector<Shape> shapes(mesh.tets.size());
   std::vector<char> inverted(mesh.tets.size());
   constexpr std::size_t kChunk = 1 << 13;
@@ -236,6 +236,7 @@ void measure(const TetMesh& mesh, int threads, VolumeCheck& check) {
     label.row.dihedral_max_deg = std::max(label.row.dihedral_max_deg, s.dihedral_max_deg);
     check.inverted += inverted[t];
     for (const std::uint8_t bin : s.bins) ++check.dihedral_histogram[bin];
+    if (inverted[t] && check.inverted_list.size() < limit) check.inverted_list.push_back(static_cast<std::int32_t>(t));
     dihedrals[t] = s.dihedral_min_deg;
     check.dihedral_below_10 += s.dihedral_min_deg < 10;
     check.dihedral_max_deg = std::max(check.dihedral_max_deg, s.dihedral_max_deg);
@@ -373,7 +374,7 @@ VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options)
   check.nodes = mesh.points.size();
   check.tets = mesh.tets.size();
   check.order = mesh.mid.empty() ? 1 : 2;
-  measure(mesh, options.threads, check);
+  measure(mesh, options.threads, options.list_limit, check);
   ConformityCheck(mesh, options.list_limit, check).run();
   check.nonconforming_edges = count_unshared_edges(mesh);
   check.conforms = check.conforms && check.nonconforming_edges == 0;

@@ -21,6 +21,7 @@ struct VolumeCheck {
   int order = 1;             ///< 2: with mid-side nodes
   std::size_t inverted = 0;  ///< tets whose exact orientation is not positive or, of second order, whose Jacobian
                              ///< determinant is not at a corner, a mid-side node or an integration point
+  std::vector<std::int32_t> inverted_list;  ///< the first 1000, ascending
   double dihedral_min_deg = 0, dihedral_p1_deg = 0,
          dihedral_max_deg = 0;        ///< p1: of the smallest dihedral per tet
   std::size_t dihedral_below_10 = 0;  ///< tets whose smallest dihedral is below 10 degrees
@@ -41,7 +42,7 @@ struct VolumeCheck {
 
 struct VolumeCheckOptions {
   int threads = 0;                ///< 0: all of the machine; the result does not depend on it
-  std::size_t list_limit = 1000;  ///< longest list of faces
+  std::size_t list_limit = 1000;  ///< longest list of faces, and of tets
 };
 
 /// Judges a mesh of linear or second-order tets; angles and radius-edge are those of the corners. @throws Error(input) for an index without a point, labels or mid-side nodes that do

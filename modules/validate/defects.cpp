@@ -226,15 +226,13 @@ class DefectFinder {
   void inverted_tets() {
     if (volume_->inverted == 0) return;
     std::vector<Defect> found;
-    for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
+    for (const std::int32_t t : volume_->inverted_list) {
       const auto& v = mesh_->tets[t];
       const auto& p = mesh_->points;
       const int sign = exact_orientation(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
-      if (sign > 0) continue;
-      Defect d = of_tet("inverted_tet", t);
-      d.text = "tet " + std::to_string(t) + (sign == 0 ? " is flat " : " is inverted ") + place_of(d.where);
+      Defect d = of_tet("inverted_tet", static_cast<std::size_t>(t));
+      d.text = "tet " + std::to_string(t) + (sign == 0 ? " is flat " : sign < 0 ? " is inverted " : " is turned inside out by its mid-side nodes ") + place_of(d.where);
       found.push_back(std::move(d));
-      if (found.size() >= 10 * o_.most_of_a_kind) break;
     }
     keep(found, volume_->inverted);
   }

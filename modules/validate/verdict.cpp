@@ -91,6 +91,7 @@ class Judge {
   void conforming() {
     Verdict& v = add("conforming", "Conforming", true);
     v.figure = counted(in_.volume->nonconforming_faces, "face", "faces") + " that do not conform";
+    if (in_.volume->order == 2) v.figure += ", " + counted(in_.volume->nonconforming_edges, "edge", "edges");
     v.limit = "none allowed";
     v.status = in_.volume->conforms ? Status::pass : Status::fail;
     v.explanation = v.status == Status::pass ? "Neighbouring tetrahedra share whole faces, and the faces between labels are the surface's triangles."
