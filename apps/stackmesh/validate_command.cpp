@@ -71,7 +71,7 @@ void add_validate_command(CLI::App& program) {
   auto a = std::make_shared<ValidateArguments>();
   command->add_option("MESH", a->meshes, "surface or volume meshes: .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh; several are compared")->required();
   command->add_option("--against", a->against, "label volume, folder or glob of slices, masks, or .cnt files that the mesh stands for");
-  command->add_option("--report", a->reports, "report file, .json; repeatable")->allow_extra_args(false);
+  command->add_option("--report", a->reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
   command->add_option("--label", a->labels, "labels to judge: 1,4,7-9,femur_left; one label: what a mesh without labels stands for");
   command->add_flag("--merge", a->merge, "the selected labels are one");
   command->add_option("--limits", a->limits, "JSON file with other limits than the default");

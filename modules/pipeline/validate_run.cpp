@@ -11,6 +11,7 @@
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/stage_clock.h"
+#include "report/html_report.h"
 #include "validate/defects.h"
 #include "validate/exact.h"
 #include "validate/overlap.h"
@@ -62,6 +63,22 @@ class ValidateRun {
       verdicts();
     });
     return std::move(report_);
+  }
+
+  /// For the HTML page; `labels`: with the labels' own slices.
+  HtmlPictures draw(bool labels) const {
+    HtmlScene scene;
+    scene.surface = &surface_;
+    if (!tets_.tets.empty()) scene.mesh = &tets_;
+    if (against_ && against_->input.volume) scene.volume = &*against_->input.volume;
+    if (against_ && against_->input.sections) scene.sections = &*against_->input.sections;
+    if (against_) scene.stack_axis = against_->axis;
+    scene.space = world_ == WorldSpace::lps ? "lps" : world_ == WorldSpace::ras ? "ras" : "none";
+    HtmlOptions options;
+    options.threads = o_.threads;
+    options.labels = labels;
+    options.bytes_limit /= o_.meshes.size();
+    return draw_pictures(scene, options);
   }
 
   /// The defects' triangles, where they were asked for and there are any.
@@ -540,7 +557,7 @@ class ValidateRun {
 
 void check_names(const ValidateRunOptions& o) {
   for (const std::string& path : o.reports)
-    if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
+    if (!ends_with(path, ".json") && !ends_with(path, ".html")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json or .html");
   if (o.mesh_space != "auto" && o.mesh_space != "lps" && o.mesh_space != "ras")
     fail_usage("unknown space '" + o.mesh_space + "'", "--mesh-space", "choose lps, ras or auto");
 }
@@ -588,16 +605,27 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
     if (!o.reports.empty()) clock.run("provenance", [&] { start.provenance = find_provenance(o.against ? o.against->paths : std::vector<std::string>()); });
   }
   std::vector<RunReport> reports;
+  std::vector<HtmlPictures> pictures;
+  const bool html = std::any_of(o.reports.begin(), o.reports.end(), [](const std::string& path) { return ends_with(path, ".html"); });
   AtomicFiles files;
   for (const std::string& path : o.meshes) {
     ValidateRun run(o, against ? &*against : nullptr, start, progress);
     reports.push_back(run.run(path));
     run.write_defects(files, reports.back());
+    if (html) {
+      StageClock clock(progress, reports.back().stages);
+      clock.run("pictures", [&] { pictures.push_back(run.draw(pictures.empty())); });
+    }
     reports.back().peak_rss_mb = peak_memory_mb();
   }
+  std::vector<HtmlSubject> subjects;
+  for (std::size_t i = 0; html && i < reports.size(); ++i) {
+    const std::string& path = reports[i].mesh->path;
+    subjects.push_back({path.substr(path.rfind('/') + 1), &reports[i], &pictures[i]});
+  }
   for (const std::string& path : o.reports) {
-    const std::string json = reports.size() == 1 ? to_json(reports[0]) : to_json(reports);
-    files.write(path, [&](std::FILE* f) { std::fwrite(json.data(), 1, json.size(), f); });
+    const std::string text = ends_with(path, ".html") ? to_html(subjects) : reports.size() == 1 ? to_json(reports[0]) : to_json(reports);
+    files.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
   }
   files.commit();
   return reports;
