@@ -1,5 +1,8 @@
 // `stackmesh validate` as a user calls it: verdict in words, exit codes, report, limits, bad input.
+#include <stdlib.h>
+
 #include <cstring>
+#include <filesystem>
 
 #include "program.h"
 
@@ -10,12 +13,23 @@ using program::Json;
 class Validate : public program::ProgramTest {
  protected:
   std::string heart_ = program::testdata("heart4.nii.gz");
-  std::string meshed(const std::string& name, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"mesh", heart_, "-o", in(name), "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    program::stackmesh(arguments);
-    return in(name);
+
+  /// The heart's mesh, coarse and made once: a.vtu, a.vtp, a.json (its report).
+  static const std::string& made() {
+    static const struct Made {
+      std::string folder = std::filesystem::temp_directory_path().string() + "/stackmesh_validate_XXXXXX";
+      Made() {
+        folder = ::mkdtemp(folder.data());
+        program::stackmesh({"mesh", program::testdata("heart4.nii.gz"), "--edge-length", "5", "--quiet", "-o", folder + "/a.vtu", "-o", folder + "/a.vtp", "--report", folder + "/a.json"});
+      }
+      ~Made() {
+        std::error_code none;
+        std::filesystem::remove_all(folder, none);
+      }
+    } one;
+    return one.folder;
   }
+  std::string meshed(const std::string& name) const { return made() + "/" + name; }
 };
 
 TEST_F(Validate, JudgesOurOwnMeshAndTheReportHasTheContractsFieldsAndMore) {
@@ -48,9 +62,9 @@ TEST_F(Validate, JudgesOurOwnMeshAndTheReportHasTheContractsFieldsAndMore) {
 }
 
 TEST_F(Validate, FiguresEqualThoseOfTheRunThatMadeTheMesh) {
-  const std::string mesh = meshed("a.vtu", {"--report", in("made.json")});
+  const std::string mesh = meshed("a.vtu");
   program::stackmesh({"validate", mesh, "--against", heart_, "--report", out("R.json")});
-  const Json made = Json::parse(program::read_file(in("made.json"))), r = report();
+  const Json made = Json::parse(program::read_file(meshed("a.json"))), r = report();
   for (const char* part : {"surface", "volume"})
     for (const auto& [key, value] : made[part].items())
       if (value.is_number() && key != "scaled_jacobian_min") { EXPECT_NEAR(value.get<double>(), r[part][key].get<double>(), 1e-6 * (1 + value.get<double>())) << key; }
@@ -72,16 +86,10 @@ TEST_F(Validate, LimitsOfAFileDecideBetweenPassAndExit6) {
 }
 
 TEST_F(Validate, AnOpenMeshIsExit4AndItsDefectsAreWritten) {
-  const std::string text = program::read_file(meshed("a.off", {"--label", "1"}));
-  std::string open = text;  // one face less
-  const std::size_t last = open.rfind("3 ", open.size() - 3);
-  open.resize(open.rfind('\n', last) + 1);
-  const std::size_t counts = open.find('\n', open.find('#')) + 1;
-  const std::string line = open.substr(counts, open.find('\n', counts) - counts);
-  const std::size_t blank = line.find(' ');
-  const long faces = std::stol(line.substr(blank + 1));
-  open.replace(counts, line.size(), line.substr(0, blank) + " " + std::to_string(faces - 1) + " 0");
-  const program::Ended ended = program::stackmesh({"validate", write("open.off", open), "--against", heart_, "--label", "1", "--report", out("R.json"), "--write-defects"});
+  std::string text = "OFF\n8 11 0\n";  // a box of voxel faces without one triangle
+  for (int k = 0; k < 8; ++k) text += std::to_string(k % 2 ? 20 : 0) + " " + std::to_string(k / 2 % 2 ? 20 : 0) + " " + std::to_string(k / 4 ? 40 : 0) + "\n";
+  text += "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n";
+  const program::Ended ended = program::stackmesh({"validate", write("open.off", text), "--report", out("R.json"), "--write-defects"});
   EXPECT_EQ(ended.code, 4);
   EXPECT_NE(ended.err.find("stackmesh: error: the mesh is invalid: Closed: 3 open edges"), std::string::npos) << ended.err;
   EXPECT_EQ(written(), (std::vector<std::string>{"R.json", "open_off.defects.vtp"}));
@@ -92,10 +100,11 @@ TEST_F(Validate, AnOpenMeshIsExit4AndItsDefectsAreWritten) {
 }
 
 TEST_F(Validate, ComparesSeveralMeshesInOneTable) {
-  const std::string fine = meshed("fine.vtu"), coarse = meshed("coarse.vtu", {"--edge-length", "9"});
+  const std::string fine = meshed("a.vtu"), coarse = in("coarse.vtp");
+  program::stackmesh({"surface", heart_, "--edge-length", "12", "--quiet", "-o", coarse});
   const program::Ended ended = program::stackmesh({"validate", fine, coarse, "--against", heart_, "--report", out("R.json")});
   EXPECT_TRUE(ended.code == 0 || ended.code == 6) << ended.err;
-  EXPECT_NE(ended.out.find("fine.vtu"), std::string::npos);
+  EXPECT_NE(ended.out.find("coarse.vtp"), std::string::npos);
   EXPECT_NE(ended.out.find("* best of its row"), std::string::npos);
   const Json r = report();
   ASSERT_EQ(r["meshes"].size(), 2u);
@@ -155,9 +164,9 @@ TEST_F(Validate, NoPatientFieldOfAHeaderReachesAReport) {
                                             "n.save(n.Nifti1Image(i.dataobj[:].astype('u1'),i.affine,h),sys.argv[2])\n"
                                             "d=i.dataobj[:].astype('u1'); s=d.shape\n"
                                             "open(sys.argv[3],'wb').write(('NRRD0004\\ntype: uchar\\ndimension: 3\\nspace: left-posterior-superior\\nsizes: %d %d %d\\n"
-                                            "space directions: (1.25,0,0) (0,1.25,0) (0,0,8)\\nencoding: raw\\nspace origin: (0,0,0)\\ncontent: DOE^JANE\\n"
+                                            "space directions: (1.5,0,0) (0,1.5,0) (0,0,4)\\nencoding: raw\\nspace origin: (0,0,0)\\ncontent: DOE^JANE\\n"
                                             "DICOM_0010_0010_PatientName:=DOE^JANE\\nDICOM_0010_0030:=19610203\\n# DOE^JANE\\n\\n'%s).encode()+d.tobytes('F'))\n",
-                                            heart_, in("named.nii.gz"), in("named.nrrd")});
+                                            program::testdata("border.nii.gz"), in("named.nii.gz"), in("named.nrrd")});
   if (made.code != 0) GTEST_SKIP() << "python3-nibabel is missing: " << made.err;
   for (const char* name : {"named.nii.gz", "named.nrrd"}) {
     ASSERT_EQ(program::stackmesh({"mesh", in(name), "-o", out("m.vtu"), "--report", out("M.json")}).code, 0);
