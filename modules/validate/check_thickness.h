@@ -17,7 +17,7 @@ struct LabelThickness {
 
 struct ThicknessOptions {
   double elements = 2;
-  std::size_t samples = 10000;  ///< most triangles a label is seen from, evenly chosen
+  std::size_t samples = 3000;  ///< most triangles a label is seen from, evenly chosen
   int threads = 0;
 };
 
