@@ -139,7 +139,7 @@ class DefectFinder {
       const InterfaceTriangle* beside = triangles_at[loop[0]].empty() ? nullptr : &complex_.triangles[triangles_at[loop[0]][0]];
       if (beside) d.label = beside->below != 0 ? beside->below : beside->above;
       d.kind = ring ? "hole" : "open_edge";
-      d.where = extent.middle();
+      for (const auto& p : degree) d.where = d.where + (1.0 / static_cast<double>(degree.size())) * complex_.points[p.first];
       d.size_mm = extent.size();
       d.count = loop.size();
       d.entity_kind = "points";
