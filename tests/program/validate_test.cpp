@@ -156,6 +156,25 @@ TEST_F(Validate, BadInputIsOneLineAndExit3) {
   fails(3, {"validate", write("cut.vtu", whole.substr(0, whole.size() / 2)), "--against", heart}, {"cut.vtu"});
 }
 
+TEST_F(Validate, SecondOrderTetsAreReadAlikeFromEveryFormat) {
+  const std::string labels = program::testdata("border.nii.gz");
+  std::vector<std::string> arguments = {"mesh", labels, "--order", "2", "--edge-length", "6", "--quiet"}, names = {"b.vtu", "b.vtk", "b.msh", "b.inp"};
+  for (const std::string& name : names) arguments.insert(arguments.end(), {"-o", in(name)});
+  ASSERT_EQ(program::stackmesh(arguments).code, 0);
+  Json first;
+  for (const std::string& name : names) {
+    const program::Ended ended = program::stackmesh({"validate", in(name), "--against", labels, "--report", out("R.json"), "--quiet"});
+    EXPECT_TRUE(ended.code == 0 || ended.code == 6) << ended.err;
+    const Json r = report();
+    EXPECT_EQ(r["mesh"]["order"], 2);
+    EXPECT_EQ(r["volume"]["closure"], "verified") << name;
+    if (first.is_null()) first = r;
+    for (std::size_t i = 0; i < first["labels"].size(); ++i)
+      EXPECT_NEAR(r["labels"][i]["tet_volume_mm3"].get<double>(), first["labels"][i]["tet_volume_mm3"].get<double>(), 1e-6 * first["labels"][i]["tet_volume_mm3"].get<double>()) << name;
+    EXPECT_NEAR(r["volume"]["scaled_jacobian_min"].get<double>(), first["volume"]["scaled_jacobian_min"].get<double>(), 1e-6) << name;
+  }
+}
+
 /// NIfTI with identifying texts in descrip and aux_file, NRRD with keys such as DICOM converters write.
 TEST_F(Validate, NoPatientFieldOfAHeaderReachesAReport) {
   const program::Ended made = program::run({"/usr/bin/python3", "-c",
