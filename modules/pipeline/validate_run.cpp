@@ -70,7 +70,7 @@ class ValidateRun {
     HtmlScene scene;
     scene.surface = &surface_;
     if (!tets_.tets.empty()) scene.mesh = &tets_;
-    if (against_ && against_->input.volume) scene.volume = &*against_->input.volume;
+    if (against_ && against_->input.volume) scene.volume = selected_ ? &*selected_ : &*against_->input.volume;
     if (against_ && against_->input.sections) scene.sections = &*against_->input.sections;
     if (against_) scene.stack_axis = against_->axis;
     scene.space = world_ == WorldSpace::lps ? "lps" : world_ == WorldSpace::ras ? "ras" : "none";
@@ -481,20 +481,19 @@ class ValidateRun {
 
   void check_against_labels() {
     const LabelVolume* volume = &*against_->input.volume;
-    LabelVolume selected;
     if (union_ || labels_.size() + 1 < volume->labels.size()) {
       std::vector<std::size_t> keep;
       for (std::size_t k = 1; k < volume->labels.size(); ++k)
         if (union_ || asked(volume->labels[k].number)) keep.push_back(k);
-      selected = select_labels(*volume, keep, union_);
+      selected_ = select_labels(*volume, keep, union_);
       if (union_) {
-        labels_.assign(selected.labels.begin() + 1, selected.labels.end());
+        labels_.assign(selected_->labels.begin() + 1, selected_->labels.end());
         for (InterfaceTriangle& t : surface_.triangles) t.below = t.below ? labels_[0].number : 0, t.above = t.above ? labels_[0].number : 0;
         report_.labels.resize(1);
         report_.labels[0].label = labels_[0].number;
         report_.labels[0].name = "all labels together";
       }
-      volume = &selected;
+      volume = &*selected_;
     }
     const std::vector<std::size_t> counts = count_voxels(*volume);
     for (LabelReport& row : report_.labels)
@@ -551,6 +550,7 @@ class ValidateRun {
   bool has_faces_ = false, union_ = false, mirrored_ = false;
   WorldSpace world_ = WorldSpace::lps;
   std::vector<LabelInfo> labels_;  // of the input that are judged
+  std::optional<LabelVolume> selected_;  // those, where they are not all of the input's
   std::string matched_, wrong_frame_;
   std::vector<LabelFidelity> fidelity_;
 };

@@ -187,7 +187,7 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
     double cell_mm = std::max(grid.unit_mm, std::sqrt(area2 / static_cast<double>(std::max<std::size_t>(1, most))));
     Drawn coarse = joined(drawn, cell_mm / grid.unit_mm);
     while (coarse.triangles.size() > most) {
-      cell_mm *= 1.15;
+      cell_mm *= std::clamp(std::sqrt(static_cast<double>(coarse.triangles.size()) / static_cast<double>(std::max<std::size_t>(1, most))), 1.1, 2.0);
       coarse = joined(drawn, cell_mm / grid.unit_mm);
     }
     packed.cell_mm = cell_mm;

@@ -85,6 +85,7 @@ class Pictures {
     histograms();
     places();
     HtmlPictures out;
+    out.space = scene_.space;
     out.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (const Blob& b : blobs_) out.blobs.emplace_back(b.name(), base64(b.bytes()));
     return out;
@@ -107,6 +108,10 @@ class Pictures {
         if (!s.interpolated) heights.push_back(s.z_mm);
       pixel_ = {scene_.sections->pixel_mm, scene_.sections->pixel_mm};
     }
+    const bool of_box = heights.empty();
+    if (of_box) heights = spread_heights();
+    if (of_box && scene_.space == "ras")  // the planes lie across the mesh's own axes
+      for (Vec3& a : lps.axes) a = turned(a);
     frame_ = lps;
     if (scene_.space == "ras") {
       frame_.origin = turned(lps.origin);
@@ -114,7 +119,7 @@ class Pictures {
     }
     Json planes = Json::array();
     for (std::size_t k = 0; k < heights.size(); ++k) {
-      if (k > 0) {
+      if (k > 0 && !of_box) {
         heights_.push_back(0.5 * (heights[k - 1] + heights[k]));
         planes.push_back({{"z", heights_.back()}, {"section", static_cast<double>(k) - 0.5}});
       }
@@ -129,6 +134,24 @@ class Pictures {
     json_["orientation"] = orientation(lps, scene_.space != "none");
     json_["pixel_mm"] = pixel_;
     json_["planes"] = planes;
+    json_["planes_are"] = of_box ? "planes" : "sections";
+  }
+
+  /// Without labels or contours, planes across z from end to end of the mesh.
+  std::vector<double> spread_heights() {
+    std::vector<double> heights;
+    if (scene_.surface->triangles.empty()) return heights;
+    double low = scene_.surface->points[scene_.surface->triangles[0].v[0]].z, high = low, longest = 0;
+    for (const InterfaceTriangle& t : scene_.surface->triangles)
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 &p = scene_.surface->points[t.v[k]], &q = scene_.surface->points[t.v[(k + 1) % 3]];
+        low = std::min(low, p.z), high = std::max(high, p.z);
+        longest = std::max(longest, norm(q - p));
+      }
+    constexpr int kPlanes = 60;
+    for (int k = 0; k < kPlanes; ++k) heights.push_back(low + (high - low) * (k + 0.5) / kPlanes);
+    pixel_ = {longest / 8, longest / 8};
+    return heights;
   }
 
   void describe_labels() {
@@ -146,20 +169,24 @@ class Pictures {
     return {{"blob", name}, {"offsets", blobs_.back().offsets()}};
   }
 
-  void slices() {
-    const PixelWindow window = window_of_labels(*scene_.volume, scene_.stack_axis);
-    std::vector<std::string> chunks = pack_slices(*scene_.volume, scene_.stack_axis, window, index_, options_.threads);
-    Json j = add("slices", chunks);
+  /// As add(), with every second chunk left empty, again and again, until the blob is within its share of the limit.
+  Json add_within(const std::string& name, std::vector<std::string> chunks, double share) {
+    Json j = add(name, chunks);
     std::size_t step = 1;
-    while (static_cast<double>(blobs_.back().bytes().size()) > kSliceShare * bytes_ && step < chunks.size()) {  // leave slices out
+    for (; static_cast<double>(blobs_.back().bytes().size()) > share * bytes_ && step < chunks.size(); j = add(name, chunks)) {
       blobs_.pop_back();
       step *= 2;
-      std::vector<std::string> some(chunks.size());
-      for (std::size_t k = 0; k < chunks.size(); k += step) some[k] = chunks[k];
-      j = add("slices", some);
+      for (std::size_t k = 0; k < chunks.size(); ++k)
+        if (k % step != 0) chunks[k].clear();
     }
-    j["window"] = {window.x, window.y, window.width, window.height};
     j["step"] = step;
+    return j;
+  }
+
+  void slices() {
+    const PixelWindow window = window_of_labels(*scene_.volume, scene_.stack_axis);
+    Json j = add_within("slices", pack_slices(*scene_.volume, scene_.stack_axis, window, index_, options_.threads), kSliceShare);
+    j["window"] = {window.x, window.y, window.width, window.height};
     json_["slices"] = j;
   }
 
@@ -175,12 +202,17 @@ class Pictures {
   void cuts() {
     if (heights_.empty()) return;
     CurveDrawing drawing = drawing_;
-    Json j = add("cuts", cut_complex(*scene_.surface, frame_, heights_, index_, drawing));
-    while (static_cast<double>(blobs_.back().bytes().size()) > kCutShare * bytes_ && drawing.tolerance_mm < 0.5 * pixel_[0]) {
-      blobs_.pop_back();
+    std::vector<std::string> packed = cut_complex(*scene_.surface, frame_, heights_, index_, drawing);
+    const auto deflated_size = [&] {
+      Blob trial("cuts");
+      trial.add(packed, options_.threads);
+      return static_cast<double>(trial.bytes().size());
+    };
+    while (drawing.tolerance_mm < 0.25 * pixel_[0] && deflated_size() > kCutShare * bytes_) {
       drawing.tolerance_mm *= 2;
-      j = add("cuts", cut_complex(*scene_.surface, frame_, heights_, index_, drawing));
+      packed = cut_complex(*scene_.surface, frame_, heights_, index_, drawing);
     }
+    Json j = add_within("cuts", std::move(packed), kCutShare);
     j["unit_mm"] = drawing.unit_mm;
     j["tolerance_mm"] = drawing.tolerance_mm;
     json_["cuts"] = j;
@@ -210,18 +242,29 @@ class Pictures {
   void meshes() {
     if (scene_.surface->triangles.empty()) return;
     const DisplayGrid grid = grid_over(scene_.surface->points);
-    const PackedMesh surface = pack_surface(*scene_.surface, distances_mm_, grid, index_,
-                                            static_cast<std::size_t>(std::min(400e3, kSurfaceShare * bytes_ / kTriangleBytes)));
-    Json j = describe(surface, "surface", grid, scene_.surface->triangles.size());
-    j["cell_mm"] = surface.cell_mm;
-    j["distance_unit_mm"] = surface.distance_unit_mm;
-    json_["surface"] = j;
+    PackedMesh packed;
+    json_["surface"] = fitted("surface", grid, scene_.surface->triangles.size(), kSurfaceShare, std::min(400e3, kSurfaceShare * bytes_ / kTriangleBytes), packed,
+                              [&](std::size_t most) { return pack_surface(*scene_.surface, distances_mm_, grid, index_, most); });
+    json_["surface"]["cell_mm"] = packed.cell_mm;
+    json_["surface"]["distance_unit_mm"] = packed.distance_unit_mm;
     if (scene_.mesh == nullptr || scene_.mesh->tets.empty()) return;
-    const PackedMesh tets =
-        pack_tets(*scene_.mesh, grid, index_, static_cast<std::size_t>(std::min(1e6, kTetShare * bytes_ / kTetBytes)), options_.threads);
-    j = describe(tets, "tets", grid, scene_.mesh->tets.size());
-    j["one_of"] = tets.one_of;
-    json_["tets"] = j;
+    const DisplayGrid tet_grid = grid_over(scene_.mesh->points);
+    json_["tets"] = fitted("tets", tet_grid, scene_.mesh->tets.size(), kTetShare, std::min(1e6, kTetShare * bytes_ / kTetBytes), packed,
+                           [&](std::size_t most) { return pack_tets(*scene_.mesh, tet_grid, index_, most, options_.threads); });
+    json_["tets"]["one_of"] = packed.one_of;
+  }
+
+  /// Packs with fewer and fewer elements until the blob is within its share of the limit.
+  template <class Pack>
+  Json fitted(const std::string& name, const DisplayGrid& grid, std::size_t of, double share, double most, PackedMesh& packed, Pack pack) {
+    packed = pack(static_cast<std::size_t>(most));
+    Json j = describe(packed, name, grid, of);
+    while (static_cast<double>(blobs_.back().bytes().size()) > share * bytes_ && packed.elements > 100) {
+      blobs_.pop_back();
+      packed = pack(packed.elements / 2);
+      j = describe(packed, name, grid, of);
+    }
+    return j;
   }
 
   void histograms() {

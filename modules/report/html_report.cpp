@@ -58,7 +58,13 @@ std::string to_html(const std::vector<HtmlSubject>& subjects) {
   std::string blobs;
   for (std::size_t m = 0; m < subjects.size(); ++m) {
     const HtmlPictures* pictures = subjects[m].pictures;
-    meshes.push_back({{"name", subjects[m].name}, {"pictures", pictures != nullptr ? Json::parse(pictures->json) : Json::object()}});
+    Json defects = Json::array();
+    for (const Defect& d : subjects[m].report->defects) {
+      if (defects.size() == 200) break;
+      const Vec3 at = place_of(d, subjects[m]);
+      defects.push_back({{"at_mm", {at.x, at.y, at.z}}, {"name", "D" + std::to_string(defects.size() + 1)}});
+    }
+    meshes.push_back({{"name", subjects[m].name}, {"defects", defects}, {"pictures", pictures != nullptr ? Json::parse(pictures->json) : Json::object()}});
     if (pictures == nullptr) continue;
     for (const auto& [name, bytes] : pictures->blobs)
       blobs += "<script type=\"text/plain\" id=\"blob-" + std::to_string(m) + "-" + name + "\">" + bytes + "</script>\n";
@@ -70,21 +76,24 @@ std::string to_html(const std::vector<HtmlSubject>& subjects) {
       if (j["label"] == l.label) colours.back() = j["colour"].get<std::string>();
   }
   const std::string name = base_name(first.input.path);
-  const std::size_t tets = first.volume ? first.volume->tets : 0, triangles = first.surface ? first.surface->triangles : 0;
-  std::string subtitle = std::to_string(first.labels.size()) + (first.labels.size() == 1 ? " label, " : " labels, ") + std::to_string(first.input.sections) +
-                         " sections; " + std::to_string(triangles) + " triangles";
-  subtitle += tets > 0 ? ", " + std::to_string(tets) + " tetrahedra" : "";
+  std::string title = "Mesh of " + name, subtitle;
+  if (first.command == "validate") title = (subjects.size() > 1 ? std::to_string(subjects.size()) + " meshes" : subjects[0].name) + (name.empty() ? "" : " against " + name);
+  const auto counted = [](std::size_t n, const char* one, const char* many) { return grouped(n) + " " + (n == 1 ? one : many); };
+  subtitle = counted(first.labels.size(), "label", "labels");
+  if (first.input.sections > 0) subtitle += ", " + counted(first.input.sections, "section", "sections");
+  if (subjects.size() == 1 && first.surface) subtitle += "; " + counted(first.surface->triangles, "triangle", "triangles");
+  if (subjects.size() == 1 && first.volume && first.volume->tets > 0) subtitle += ", " + counted(first.volume->tets, "tetrahedron", "tetrahedra");
   return filled(as_utf8(page::html),
-                {{"title", escaped(as_utf8("stackmesh report: " + name))},
-                 {"heading", escaped(as_utf8(subjects.size() > 1 ? std::to_string(subjects.size()) + " meshes against " + name : "Mesh of " + name))},
+                {{"title", escaped(as_utf8("stackmesh report: " + title))},
+                 {"heading", escaped(as_utf8(title))},
                  {"subtitle", escaped(as_utf8(subtitle))},
                  {"css", page::css},
-                 {"verdict", as_utf8(verdict_html(first))},
+                 {"verdict", as_utf8(verdict_html(subjects))},
                  {"compare_link", subjects.size() > 1 ? " <a href=\"#compare\">Comparison</a>" : ""},
                  {"compare", as_utf8(comparison_html(subjects))},
-                 {"labels", as_utf8(labels_html(first, colours))},
-                 {"defects", ""},
-                 {"provenance", as_utf8(provenance_html(first))},
+                 {"labels", as_utf8(labels_html(subjects, colours))},
+                 {"defects", as_utf8(defects_html(subjects))},
+                 {"provenance", as_utf8(provenance_html(subjects))},
                  {"data", for_script(Json({{"meshes", meshes}}).dump(-1, ' ', false, Json::error_handler_t::replace))},
                  {"blobs", blobs},
                  {"three", page::three_js},

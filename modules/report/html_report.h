@@ -29,6 +29,7 @@ struct HtmlOptions {
 
 /// The pictures of one mesh, packed for the page (modules/report/README.md describes their form).
 struct HtmlPictures {
+  std::string space;                                       ///< as in the scene
   std::string json;                                        ///< what there is, and where
   std::vector<std::pair<std::string, std::string>> blobs;  ///< name, base64
 };

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "report/comparison.h"
+
 namespace stackmesh {
 namespace {
 
 /// About three significant digits; thousands apart; "none" where there is nothing.
-std::string grouped(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
-  return text;
-}
-
 std::string number(double value, int digits = 3) {
   if (!std::isfinite(value)) return "none";
   const double size = std::abs(value);
@@ -42,9 +38,9 @@ std::string cell_of(const std::optional<T>& value, int digits = 3, const char* k
 
 std::string text_cell(const std::string& text) { return "<td class=\"text\">" + escaped(text) + "</td>"; }
 
-std::string distance_cells(const std::optional<Distance>& d) {
+std::string distance_cells(const std::optional<Distance>& d, const char* kind) {
   if (!d) return "<td data-v=\"\">none</td><td data-v=\"\">none</td><td data-v=\"\">none</td>";
-  return cell(d->mean) + cell(d->p95) + cell(d->max);
+  return cell(d->mean, 3, kind) + cell(d->p95, 3, kind) + cell(d->max, 3, kind);
 }
 
 std::string label_name(const LabelReport& l) { return l.name.empty() ? std::to_string(l.label) : std::to_string(l.label) + " " + l.name; }
@@ -53,7 +49,93 @@ std::string row(const std::string& name, const std::string& value) {
   return "<tr><th scope=\"row\">" + escaped(name) + "</th><td class=\"text\">" + escaped(value) + "</td></tr>\n";
 }
 
+std::string badge(const std::string& status) { return "<span class=\"badge " + status + "\">" + status + "</span>"; }
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return out;
+}
+
+/// The whole verdict in one word and one sentence.
+std::string banner(const RunReport& r) {
+  if (r.verdicts.empty()) return "<div class=\"banner none\"><span class=\"word\">NOT JUDGED</span><p class=\"why\">This run gave no verdict.</p></div>\n";
+  std::vector<std::string> invalid, outside, warnings;
+  for (const Verdict& v : r.verdicts) {
+    if (v.status == Status::fail) (v.validity ? invalid : outside).push_back(v.title);
+    if (v.status == Status::warn) warnings.push_back(v.title);
+  }
+  std::string word = "PASS", sentence = "The mesh is valid and inside every limit.";
+  if (!warnings.empty()) word = "WARN", sentence = "The mesh is valid. Look before you use it at: " + joined(warnings) + ".";
+  if (!outside.empty()) word = "FAIL", sentence = "The mesh is valid, but outside a limit: " + joined(outside) + ".";
+  if (!invalid.empty()) word = "FAIL", sentence = "The mesh is invalid and should not be used. What is wrong: " + joined(invalid) + ".";
+  return std::string("<div class=\"banner ") + to_text(overall(r.verdicts)) + "\"><span class=\"word\">" + word + "</span><p class=\"why\">" + escaped(sentence) + "</p></div>\n";
+}
+
+/// "bad" or "odd" where the verdict fails or warns because of this label.
+const char* blame(const RunReport& r, const char* id, Label label) {
+  for (const Verdict& v : r.verdicts)
+    if (v.id == id && v.status != Status::pass && std::find(v.labels.begin(), v.labels.end(), label) != v.labels.end()) return v.status == Status::fail ? "bad" : "odd";
+  return "";
+}
+
+std::string label_table(const RunReport& r, const std::vector<std::string>& colours) {
+  struct Group {
+    const char* name;
+    std::vector<const char*> heads;
+  };
+  static const std::vector<Group> groups = {{"", {"Label"}},
+                                            {"Topology", {"closed", "pieces", "in input", "Euler", "genus"}},
+                                            {"Volume, mm\xc2\xb3", {"input", "surface", "tets", "change, %"}},
+                                            {"", {"tets", "Dice"}},
+                                            {"Labels to mesh, mm", {"mean", "95 %", "max"}},
+                                            {"Mesh to labels, mm", {"mean", "95 %", "max"}},
+                                            {"Smallest angle, largest dihedral, \xc2\xb0", {"triangle", "dihedral", "largest"}},
+                                            {"Thickness", {"thin, %", "5 %, mm"}},
+                                            {"Ends", {"low", "high"}}};
+  std::string heads, tops;
+  std::size_t column = 0;
+  for (const Group& g : groups) {
+    tops += "<th colspan=\"" + std::to_string(g.heads.size()) + "\"" + (*g.name ? " scope=\"colgroup\"" : "") + ">" + g.name + "</th>";
+    for (const char* head : g.heads) {
+      const std::string name = g.name, text = head;
+      heads += "<th scope=\"col\"" + std::string(text == "Label" || text == "closed" || name == "Ends" ? " class=\"text\"" : "") + " data-sort=\"" + std::to_string(column++) + "\">" + head + "</th>";
+    }
+  }
+  std::string out =
+      "<div class=\"table tall wide\" tabindex=\"0\" role=\"region\" aria-label=\"Figures per label\"><table class=\"sortable\"><caption>A click on a column's head sorts. Coloured figures "
+      "are those that a verdict names. Thin: share of the surface where the label is thinner than two elements.</caption><thead><tr class=\"groups\">" + tops + "</tr><tr>" + heads + "</tr></thead><tbody>\n";
+  for (std::size_t k = 0; k < r.labels.size(); ++k) {
+    const LabelReport& l = r.labels[k];
+    const auto of = [&](const char* id) { return blame(r, id, l.label); };
+    std::optional<double> change, thin;
+    if (l.input_volume_mm3 && *l.input_volume_mm3 > 0) change = 100 * (l.surface_volume_mm3 / *l.input_volume_mm3 - 1);
+    if (l.thin_share) thin = 100 * *l.thin_share;
+    out += "<tr><th scope=\"row\" class=\"text\" data-v=\"" + std::to_string(l.label) + "\"><span class=\"swatch\" style=\"background:" + escaped(k < colours.size() ? colours[k] : "#999999") +
+           "\"></span>" + escaped(label_name(l)) + "</th>" + (l.closed ? "<td class=\"text\">yes</td>" : "<td class=\"text bad\">no</td>") +
+           cell(l.components, 6, of("components")) + cell_of(l.input_components, 6) + cell(static_cast<double>(l.euler), 6) + cell_of(l.genus, 6) + cell_of(l.input_volume_mm3, 4) +
+           cell(l.surface_volume_mm3, 4) + cell_of(l.tet_volume_mm3, 4) + cell_of(change, 3, of("volume")) + cell_of(l.tets, 6) + cell_of(l.dice, 4, of("fidelity")) +
+           distance_cells(l.distance_mm, of("fidelity")) + distance_cells(l.reverse_distance_mm, of("fidelity")) + cell(l.angle_min_deg, 3, of("quality")) +
+           cell_of(l.dihedral_min_deg, 3, of("quality")) + cell_of(l.dihedral_max_deg, 4, of("quality")) + cell_of(thin, 3, of("thickness")) + cell_of(l.thickness_p5_mm) +
+           text_cell(l.cap_low) + text_cell(l.cap_high) + "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string stages_table(const RunReport& r, const std::string& of) {
+  std::string out = "<div class=\"table\"><table><caption>" + escaped("Stages" + of) + "; peak memory " + number(r.peak_rss_mb) +
+                    " MB</caption><thead><tr><th scope=\"col\" class=\"text\">stage</th><th scope=\"col\">wall, s</th><th scope=\"col\">CPU, s</th></tr></thead><tbody>\n";
+  for (const StageTime& s : r.stages) out += "<tr><th scope=\"row\" class=\"text\">" + escaped(s.name) + "</th><td>" + number(s.wall_s) + "</td><td>" + number(s.cpu_s) + "</td></tr>\n";
+  return out + "</tbody></table></div>\n";
+}
+
 }  // namespace
+
+std::string grouped(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
+  return text;
+}
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -69,79 +151,142 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string verdict_html(const RunReport& r) {
-  struct Check {
-    std::string name, figure, limit;
-    bool passes;
-  };
-  std::vector<Check> checks;
-  if (r.surface) {
-    checks.push_back({"Closed", grouped(r.surface->open_edges) + " open edges", "none allowed", r.surface->open_edges == 0});
-    checks.push_back({"Free of intersections", grouped(r.surface->self_intersections) + " crossing pairs", "none allowed", r.surface->self_intersections == 0});
+std::string verdict_html(const std::vector<HtmlSubject>& subjects) {
+  std::string out;
+  for (const HtmlSubject& s : subjects) {
+    const RunReport& r = *s.report;
+    if (subjects.size() > 1) out += "<h3>" + escaped(s.name) + "</h3>\n";
+    out += banner(r);
+    out += "<ul class=\"checks-grid\">\n";
+    for (const Verdict& v : r.verdicts) {
+      const std::string status = to_text(v.status);
+      out += "<li class=\"is-" + status + "\"><div class=\"name\"><span>" + escaped(v.title) + "</span>" + badge(status) + "</div><p class=\"figure\">" + escaped(v.figure) +
+             "</p><p class=\"limit\">Limit: " + escaped(v.limit) + "</p><p class=\"note\">" + escaped(v.explanation) + "</p></li>\n";
+    }
+    out += "</ul>\n";
+    if (r.input.dimensions[0] == 0)
+      out += "<p class=\"notice\">Not judged, as there are no voxels to compare with: components, volume and fidelity.</p>\n";
   }
-  if (r.volume) {
-    checks.push_back({"Tetrahedra upright", grouped(r.volume->inverted) + " inverted", "none allowed", r.volume->inverted == 0});
-    checks.push_back({"Tetrahedra fit the surface", grouped(r.volume->nonconforming_faces) + " faces that do not", "none allowed", r.volume->conforms});
-  }
-  const bool all = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passes; });
-  std::string out = std::string("<div class=\"banner ") + (all ? "pass" : "fail") + "\"><span class=\"word\">" + (all ? "PASS" : "FAIL") +
-                    "</span><p class=\"why\">" + (all ? "The mesh is valid." : "The mesh is not valid and must not be used.") + "</p></div>\n<ul class=\"checks-grid\">\n";
-  for (const Check& c : checks)
-    out += std::string("<li class=\"is-") + (c.passes ? "pass" : "fail") + "\"><div class=\"name\"><span>" + c.name + "</span><span class=\"badge " +
-           (c.passes ? "pass\">pass" : "fail\">fail") + "</span></div><p class=\"figure\">" + c.figure + "</p><p class=\"limit\">Limit: " + c.limit + "</p></li>\n";
-  return out + "</ul>\n";
-}
-
-std::string labels_html(const RunReport& r, const std::vector<std::string>& colours) {
-  static const char* const heads[] = {"Label", "closed", "pieces", "in input", "Euler no.", "input", "surface", "tets", "surface to input, %",
-                                      "tets", "Dice", "mean", "95 %", "max", "mean", "95 %", "max", "low", "high"};
-  std::string out =
-      "<div class=\"table tall\" tabindex=\"0\" role=\"region\" aria-label=\"Figures per label\"><table class=\"sortable\"><caption>Volumes in mm\xc2\xb3, distances in mm. "
-      "A click on a column's head sorts.</caption><thead><tr class=\"groups\"><th colspan=\"5\">Topology</th><th colspan=\"4\">Volume</th>"
-      "<th colspan=\"2\">Elements, overlap</th><th colspan=\"3\">Labels to mesh</th><th colspan=\"3\">Mesh to labels</th><th colspan=\"2\">Ends</th></tr><tr>";
-  for (std::size_t k = 0; k < sizeof heads / sizeof *heads; ++k)
-    out += "<th scope=\"col\"" + std::string(k == 0 || k >= 17 || k == 1 ? " class=\"text\"" : "") + " data-sort=\"" + std::to_string(k) + "\">" + heads[k] + "</th>";
-  out += "</tr></thead><tbody>\n";
-  for (std::size_t k = 0; k < r.labels.size(); ++k) {
-    const LabelReport& l = r.labels[k];
-    const bool fewer = l.input_components && *l.input_components != l.components;
-    std::optional<double> change;
-    if (l.input_volume_mm3 && *l.input_volume_mm3 > 0) change = 100 * (l.surface_volume_mm3 / *l.input_volume_mm3 - 1);
-    out += "<tr><th scope=\"row\" data-v=\"" + std::to_string(l.label) + "\"><span class=\"swatch\" style=\"background:" + escaped(k < colours.size() ? colours[k] : "#999") +
-           "\"></span>" + escaped(label_name(l)) + "</th>" + (l.closed ? "<td class=\"text\">yes</td>" : "<td class=\"text bad\">no</td>") +
-           cell(l.components, 6, fewer ? "odd" : "") + cell_of(l.input_components, 6) + cell(static_cast<double>(l.euler), 6) + cell_of(l.input_volume_mm3, 4) +
-           cell(l.surface_volume_mm3, 4) + cell_of(l.tet_volume_mm3, 4) + cell_of(change, 3) + cell_of(l.tets, 6) + cell_of(l.dice, 4) +
-           distance_cells(l.distance_mm) + distance_cells(l.reverse_distance_mm) + text_cell(l.cap_low) + text_cell(l.cap_high) + "</tr>\n";
-  }
-  return out + "</tbody></table></div>\n";
+  return out;
 }
 
 std::string comparison_html(const std::vector<HtmlSubject>& subjects) {
   if (subjects.size() < 2) return "";
-  std::string out = "<section id=\"compare\" aria-labelledby=\"compare-title\"><h2 id=\"compare-title\">Comparison</h2>\n<div class=\"table\"><table><thead><tr><th scope=\"col\" class=\"text\">Figure</th>";
+  std::vector<RunReport> reports;
+  for (const HtmlSubject& s : subjects) reports.push_back(*s.report);
+  std::string out =
+      "<section id=\"compare\" aria-labelledby=\"compare-title\"><h2 id=\"compare-title\">Comparison</h2>\n<div class=\"table\"><table><caption>The best figure of a row is "
+      "bold and marked \xe2\x98\x85; worst label each.</caption><thead><tr><th scope=\"col\" class=\"text\">Figure</th>";
   for (const HtmlSubject& s : subjects) out += "<th scope=\"col\">" + escaped(s.name) + "</th>";
-  return out + "</tr></thead><tbody></tbody></table></div></section>\n";
+  out += "</tr></thead><tbody>\n<tr><th scope=\"row\">verdict</th>";
+  for (const HtmlSubject& s : subjects) out += "<td>" + badge(to_text(overall(s.report->verdicts))) + "</td>";
+  out += "</tr>\n";
+  for (const ComparisonRow& row : compare(reports)) {
+    if (row.id == "verdict") continue;
+    out += "<tr><th scope=\"row\">" + escaped(row.name) + "</th>";
+    for (std::size_t c = 0; c < row.texts.size(); ++c) {
+      const bool best = std::find(row.best.begin(), row.best.end(), c) != row.best.end();
+      out += (best ? "<td class=\"best\">\xe2\x98\x85 " : "<td>") + escaped(row.texts[c]) + "</td>";
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div></section>\n";
 }
 
-std::string provenance_html(const RunReport& r) {
-  std::string out = "<div class=\"two\"><div>\n<div class=\"table\"><table><caption>Input and program</caption><tbody>\n";
-  out += row("program", "stackmesh " + r.version) + row("command", r.command) + row("input", r.input.path) + row("kind", r.input.kind);
+std::string labels_html(const std::vector<HtmlSubject>& subjects, const std::vector<std::string>& colours) {
+  std::string out;
+  for (std::size_t s = 0; s < subjects.size(); ++s) {
+    const std::string table = label_table(*subjects[s].report, colours);
+    if (subjects.size() == 1) return table;
+    out += std::string("<details") + (s == 0 ? " open" : "") + "><summary>" + escaped(subjects[s].name) + "</summary>\n" + table + "</details>\n";
+  }
+  return out;
+}
+
+Vec3 place_of(const Defect& defect, const HtmlSubject& subject) {
+  const bool turned = subject.pictures != nullptr && subject.pictures->space == "ras";
+  return turned ? Vec3{-defect.where.x, -defect.where.y, defect.where.z} : defect.where;
+}
+
+std::string defects_html(const std::vector<HtmlSubject>& subjects) {
+  constexpr std::size_t kMost = 200;
+  std::string rows;
+  std::size_t total = 0, shown = 0;
+  for (std::size_t m = 0; m < subjects.size(); ++m) {
+    const std::vector<Defect>& defects = subjects[m].report->defects;
+    total += defects.size();
+    for (std::size_t d = 0; d < defects.size() && shown < kMost; ++d, ++shown) {
+      const Defect& defect = defects[d];
+      const Vec3 at = place_of(defect, subjects[m]);
+      char place[120], data[160];
+      std::snprintf(place, sizeof place, "%.1f, %.1f, %.1f mm", at.x, at.y, at.z);
+      std::snprintf(data, sizeof data, "[%.6g,%.6g,%.6g]", at.x, at.y, at.z);
+      std::string kind = defect.kind;
+      std::replace(kind.begin(), kind.end(), '_', ' ');
+      rows += "<tr>" + (subjects.size() > 1 ? text_cell(subjects[m].name) : "") + "<td data-v=\"" + std::to_string(d + 1) + "\">D" + std::to_string(d + 1) + "</td>" + text_cell(kind) +
+              text_cell(defect.text) + cell(defect.label, 9) + "<td>" + place + "</td>" +
+              (defect.section ? cell(*defect.section + 1, 9) : "<td data-v=\"\"></td>") + cell(static_cast<double>(defect.count), 9) + cell(defect.size_mm) +
+              "<td class=\"jump\"><button type=\"button\" data-mesh=\"" + std::to_string(m) + "\" data-size=\"" + exact(defect.size_mm) + "\" data-at=\"" + data +
+              "\" aria-label=\"Show defect " + std::to_string(d + 1) + " in the pictures\">Show</button></td></tr>\n";
+    }
+  }
+  if (total == 0) return "<p>No defects were found.</p>\n<h3>Elements with the worst figures</h3>\n";
+  std::string out = "<h3>Defects</h3>\n<div class=\"table tall prose\"><table class=\"sortable\"><caption>" + grouped(total) + (total == 1 ? " defect" : " defects");
+  if (shown < total) out += "; the first " + grouped(shown) + " are listed, the JSON report has all";
+  out += ". The numbers are those of the rings in the section picture.</caption><thead><tr>";
+  std::size_t column = 0;
+  const auto head = [&](const char* text, bool is_text) {
+    out += std::string("<th scope=\"col\"") + (is_text ? " class=\"text\"" : "") + " data-sort=\"" + std::to_string(column++) + "\">" + text + "</th>";
+  };
+  if (subjects.size() > 1) head("Mesh", true);
+  head("No.", false), head("What", true), head("In words", true), head("Label", false), head("At", false), head("Section", false), head("Count", false), head("Size, mm", false);
+  return out + "<th scope=\"col\" class=\"jump text\">Show</th></tr></thead><tbody>\n" + rows + "</tbody></table></div>\n<h3>Elements with the worst figures</h3>\n";
+}
+
+std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
+  const RunReport& r = *subjects.front().report;
+  std::string out = "<div class=\"two prose\"><div>\n<div class=\"table\"><table><caption>Input and program</caption><tbody>\n";
+  out += row("input", r.input.path) + row("kind", r.input.kind);
+  if (r.provenance && !r.provenance->input_sha256.empty())
+    out += row(r.provenance->input_files > 1 ? "SHA-256 of " + std::to_string(r.provenance->input_files) + " files" : "SHA-256", r.provenance->input_sha256);
   if (r.input.dimensions[0] > 0) {
     const auto& d = r.input.dimensions;
     const auto& s = r.input.spacing_mm;
     out += row("dimensions", std::to_string(d[0]) + " x " + std::to_string(d[1]) + " x " + std::to_string(d[2]) + " voxels");
     out += row("spacing", exact(s[0]) + " x " + exact(s[1]) + " x " + exact(s[2]) + " mm");
   }
-  out += row("sections", std::to_string(r.input.sections) + " along " + r.input.axis) + row("world frame", r.input.space);
-  out += "</tbody></table></div>\n<h3>Warnings</h3>\n";
-  if (r.warnings.empty()) out += "<p>None.</p>\n";
-  if (!r.warnings.empty()) out += "<ul class=\"warnings\">\n";
-  for (const std::string& w : r.warnings) out += "<li>" + escaped(w) + "</li>\n";
-  if (!r.warnings.empty()) out += "</ul>\n";
-  out += "</div>\n<div>\n<div class=\"table\"><table><caption>Stages; peak memory " + number(r.peak_rss_mb) + " MB</caption><thead><tr><th scope=\"col\" class=\"text\">stage</th><th scope=\"col\">wall, s</th><th scope=\"col\">CPU, s</th></tr></thead><tbody>\n";
-  for (const StageTime& s : r.stages) out += "<tr><th scope=\"row\">" + escaped(s.name) + "</th><td>" + number(s.wall_s) + "</td><td>" + number(s.cpu_s) + "</td></tr>\n";
-  out += "</tbody></table></div>\n<details open><summary>Options</summary><div class=\"table\"><table><tbody>\n";
+  if (r.input.sections > 0) out += row("sections", std::to_string(r.input.sections) + " along " + r.input.axis);
+  out += row("world frame", r.input.space) + row("command", r.command) + row("program", "stackmesh " + r.version);
+  if (r.provenance) {
+    const Provenance& p = *r.provenance;
+    out += row("compiler", p.compiler + (p.build_type.empty() ? "" : ", " + p.build_type)) + row("SHA-256 of the program", p.program_sha256);
+    out += row("processor", p.processor + ", " + std::to_string(p.cores) + (p.cores == 1 ? " core" : " cores")) + row("memory", number(p.memory_gib) + " GiB") + row("system", p.system);
+    out += row("finished", p.finished_utc);
+  }
+  out += "</tbody></table></div>\n";
+  for (const HtmlSubject& s : subjects)
+    if (s.report->mesh) {
+      const JudgedMesh& m = *s.report->mesh;
+      out += "<div class=\"table\"><table><caption>Mesh " + escaped(s.name) + "</caption><tbody>\n" + row("file", m.path) + row("format", m.format) + row("SHA-256", m.sha256) +
+             row("in the file", grouped(m.vertices) + " vertices, " + grouped(m.triangles) + " triangles, " + grouped(m.tets) + " tetrahedra" + (m.order == 2 ? " of 10 nodes" : "")) +
+             row("labels", m.labels) + row("frame", m.space + ": " + m.space_reason) + "</tbody></table></div>\n";
+    }
+  out += "</div>\n<div>\n";
+  for (const HtmlSubject& s : subjects) {
+    out += "<h3>Warnings" + (subjects.size() > 1 ? " of " + escaped(s.name) : "") + "</h3>\n";
+    if (s.report->warnings.empty()) {
+      out += "<p>None.</p>\n";
+      continue;
+    }
+    out += "<ul class=\"warnings\">\n";
+    for (const std::string& w : s.report->warnings) out += "<li>" + escaped(w) + "</li>\n";
+    out += "</ul>\n";
+  }
+  for (const HtmlSubject& s : subjects) out += stages_table(*s.report, subjects.size() > 1 ? " of " + s.name : "");
+  out += "<div class=\"table\"><table><caption>Options</caption><tbody>\n";
   for (const auto& [name, value] : r.options) out += row(name, value);
+  out += "</tbody></table></div>\n<details><summary>Limits of the verdicts</summary><div class=\"table\"><table><tbody>\n";
+  for (const auto& [name, value] : named_limits(r.limits)) out += row(name, exact(value));
   return out + "</tbody></table></div></details>\n</div></div>\n";
 }
 

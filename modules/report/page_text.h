@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,19 @@ namespace stackmesh {
 /// Text that is safe in HTML, between tags and in attributes.
 std::string escaped(const std::string& text);
 
-/// The parts of the page that need no script, as HTML.
-std::string verdict_html(const RunReport& report);
-std::string labels_html(const RunReport& report, const std::vector<std::string>& colours);
+/// With thousands apart: 12,345.
+std::string grouped(std::uint64_t value);
+
+/// The parts of the page that need no script, as HTML; of several meshes one after the other.
+std::string verdict_html(const std::vector<HtmlSubject>& subjects);
 std::string comparison_html(const std::vector<HtmlSubject>& subjects);
-std::string provenance_html(const RunReport& report);
+/// `colours` are beside the labels of the first report.
+std::string labels_html(const std::vector<HtmlSubject>& subjects, const std::vector<std::string>& colours);
+/// Where it fails, with a button for each place that the scripts serve.
+std::string defects_html(const std::vector<HtmlSubject>& subjects);
+std::string provenance_html(const std::vector<HtmlSubject>& subjects);
+
+/// A defect's place in the frame that the pictures of its mesh are in.
+Vec3 place_of(const Defect& defect, const HtmlSubject& subject);
 
 }  // namespace stackmesh

@@ -185,6 +185,12 @@ std::string text_of(const Json& j) { return j.dump(1, ' ', false, Json::error_ha
 
 }  // namespace
 
+std::vector<std::pair<std::string, double>> named_limits(const Limits& limits) {
+  std::vector<std::pair<std::string, double>> named;
+  each_limit(limits, [&](const char* name, const auto& value) { named.emplace_back(name, static_cast<double>(value)); });
+  return named;
+}
+
 std::string to_json(const RunReport& report) { return text_of(describe(report)); }
 
 std::string to_json(const std::vector<RunReport>& reports) {

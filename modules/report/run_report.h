@@ -101,6 +101,9 @@ std::string to_json(const RunReport& report);
 /// Reports of several meshes against one input, with a table of them: {"schema", "command", "comparison", "meshes"}.
 std::string to_json(const std::vector<RunReport>& reports);
 
+/// Every limit by its name in the reports.
+std::vector<std::pair<std::string, double>> named_limits(const Limits& limits);
+
 /// Limits from a JSON file of the fields that a report lists under "limits"; those left out keep their default.
 /// @throws Error(input) for an unreadable file, an unknown field or what is not a number.
 Limits read_limits(const std::string& path);

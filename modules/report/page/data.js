@@ -39,10 +39,11 @@ class Reader {
   }
 }
 
-function readPolylines(bytes, unit) {
+/** `places`: of each label of the picture, its place in the list of all labels. */
+function readPolylines(bytes, unit, places) {
   const r = new Reader(bytes), lines = [];
   for (let n = r.number(); n > 0; --n) {
-    const line = {left: r.number(), right: r.number(), points: null, closed: false};
+    const line = {left: places[r.number()], right: places[r.number()], points: null, closed: false};
     const count = r.number(), points = new Float64Array(2 * count);
     let x = 0, y = 0;
     for (let i = 0; i < count; ++i) {
@@ -57,10 +58,10 @@ function readPolylines(bytes, unit) {
 }
 
 /** A slice's label places, row by row. */
-function readRuns(bytes, count) {
+function readRuns(bytes, count, places) {
   const r = new Reader(bytes), pixels = new Uint16Array(count);
   for (let at = 0; at < count && r.at < bytes.length;) {
-    const label = r.number(), run = r.number();
+    const label = places[r.number()], run = r.number();
     pixels.fill(label, at, at += run);
   }
   return pixels;
@@ -95,9 +96,9 @@ function readTets(bytes, count) {
   return out;
 }
 
-function readNumbers(bytes, count) {
+function readLabels(bytes, count, places) {
   const r = new Reader(bytes), out = new Uint16Array(count);
-  for (let i = 0; i < count; ++i) out[i] = r.number();
+  for (let i = 0; i < count; ++i) out[i] = places[r.number()];
   return out;
 }
 
@@ -108,10 +109,10 @@ async function unpackMesh(number, mesh, centre) {
   const out = {positions: readPositions(raw.positions, mesh, centre), angles: raw.angles, distances: raw.distances || null};
   if (raw.triangles) {
     out.triangles = readTriangles(raw.triangles, mesh.elements);
-    out.labels = readNumbers(raw.labels, 2 * mesh.elements);
+    out.labels = readLabels(raw.labels, 2 * mesh.elements, placesOf[number]);
   } else {
     out.tets = readTets(raw.tets, mesh.elements);
-    out.labels = readNumbers(raw.labels, mesh.elements);
+    out.labels = readLabels(raw.labels, mesh.elements, placesOf[number]);
   }
   return out;
 }
@@ -141,7 +142,12 @@ function figure(value, digits = 3) {
 }
 
 const pictures = number => page.meshes[number].pictures;
-const labelList = () => pictures(0).labels;
+
+// The labels of all meshes in one list; those of the first keep their colour.
+const allLabels = new Map();
+for (const m of page.meshes) for (const l of m.pictures.labels || []) if (!allLabels.has(l.label)) allLabels.set(l.label, l);
+const labels = [...allLabels.values()].sort((a, b) => a.label - b.label);
+const placesOf = page.meshes.map(m => (m.pictures.labels || []).map(l => labels.findIndex(k => k.label === l.label)));
 const labelText = l => l.label === 0 ? 'background' : l.name ? l.label + ' ' + l.name : 'label ' + l.label;
 
 function rgb(hex) {
@@ -158,7 +164,8 @@ function placeText(p) {
 
 /** "section 12" or "between sections 12 and 13", counted from 1. */
 function sectionText(section) {
-  return Number.isInteger(section) ? 'section ' + (section + 1) : 'between sections ' + (Math.floor(section) + 1) + ' and ' + (Math.floor(section) + 2);
+  const noun = pictures(0).planes_are === 'planes' ? 'plane' : 'section';
+  return Number.isInteger(section) ? noun + ' ' + (section + 1) : 'between ' + noun + 's ' + (Math.floor(section) + 1) + ' and ' + (Math.floor(section) + 2);
 }
 
 /** The plane nearest to a height. */

@@ -8,9 +8,10 @@ async function main() {
     say('This browser is too old to unpack the pictures (it lacks DecompressionStream: Chrome and Edge 80, Firefox 113, Safari 16.4 have it). The verdict, the tables and the provenance are complete.', true);
     return;
   }
-  const labels = labelList(), shown = labels.map((_, i) => i > 0), frame = pictures(0).frame;
+  const shown = labels.map((_, i) => i > 0), frame = pictures(0).frame;
   const worst = (pictures(0).worst || []).map((w, n) => ({...w, number: n + 1}));
-  const marks = worst.map(w => { const [x, y, z] = toStack(frame, w.at_mm); return {x, y, z, name: String(w.number)}; });
+  const mark = (at, name) => { const [x, y, z] = toStack(frame, at); return {x, y, z, name}; };
+  const marks = page.meshes.flatMap(m => m.defects.map(d => mark(d.at_mm, d.name))).concat(worst.map(w => mark(w.at_mm, String(w.number))));
   byId('controls').hidden = byId('views').hidden = false;
   const sections = new SectionView(shown, marks), solid = new SolidView(shown);
   const hasSections = await sections.start();
@@ -43,14 +44,19 @@ async function main() {
   byId('labels-none').addEventListener('click', () => all(false));
   byId('labels-count').textContent = labels.length - 1 + ' of ' + (labels.length - 1) + ' shown';
 
-  const show = async (at, corners, inside) => {
+  const show = async (at, corners, {inside = false, size = 0, mesh = 0} = {}) => {
     byId('views').scrollIntoView({block: 'start'});
     if (hasSections) await sections.show(toStack(frame, at), Math.max(sections.zoom, 3));
-    if (hasSolid) solid.focus(at, corners, inside);
+    if (!hasSolid) return;
+    if (solid.current !== mesh && pictures(mesh).surface) {
+      byId('solid-mesh').value = mesh;
+      await solid.load(mesh);
+    }
+    solid.focus(at, corners, inside, size);
   };
   listWorst(worst, show);
   for (const button of document.querySelectorAll('button[data-at]'))
-    button.addEventListener('click', () => show(JSON.parse(button.dataset.at), [], button.dataset.inside === 'yes'));
+    button.addEventListener('click', () => show(JSON.parse(button.dataset.at), [], {size: Number(button.dataset.size), mesh: Number(button.dataset.mesh)}));
 
   window.addEventListener('beforeprint', () => {
     if (!hasSolid) return;
@@ -65,22 +71,22 @@ async function main() {
 
 /** The worst places as a table whose buttons show each in both pictures. */
 function listWorst(worst, show) {
-  const box = byId('worst-places'), labels = labelList(), planes = pictures(0).planes, frame = pictures(0).frame;
+  const box = byId('worst-places'), planes = pictures(0).planes, frame = pictures(0).frame;
   if (worst.length === 0) { box.append(element('p', {text: 'There is nothing to list.'})); return; }
   const kinds = {angle: ['narrowest triangle', '°'], dihedral: ['smallest dihedral of a tet', '°'], distance: ['farthest from the labels', ' mm']};
   const body = element('tbody');
   for (const w of worst) {
     const plane = planes.length > 0 ? planes[nearestPlane(planes, toStack(frame, w.at_mm)[2])].section : null;
-    const names = w.labels.map(i => labelText(labels[i])).join(', ');
+    const names = w.labels.map(i => labelText(labels[placesOf[0][i]])).join(', ');
     const [name, unit] = kinds[w.kind];
     body.append(element('tr', {},
         element('td', {'data-v': w.number, text: w.number}), element('td', {class: 'text', text: name}),
         element('td', {'data-v': w.figure, text: w.figure.toFixed(w.kind === 'distance' ? 2 : 1) + unit}), element('td', {class: 'text', text: names}),
         element('td', {text: placeText(w.at_mm)}), element('td', {'data-v': plane === null ? '' : plane, text: plane === null ? '' : sectionText(plane)}),
-        element('td', {class: 'jump'}, element('button', {type: 'button', text: 'Show', 'aria-label': 'Show place ' + w.number + ' in the pictures', onclick: () => show(w.at_mm, w.corners_mm, w.kind === 'dihedral')}))));
+        element('td', {class: 'jump'}, element('button', {type: 'button', text: 'Show', 'aria-label': 'Show place ' + w.number + ' in the pictures', onclick: () => show(w.at_mm, w.corners_mm, {inside: w.kind === 'dihedral'})}))));
   }
   const head = ['No.', 'What', 'Figure', 'Labels', 'At', 'Section'].map((text, i) => element('th', {scope: 'col', class: i === 1 || i === 3 ? 'text' : null, 'data-sort': i, text}));
-  const table = element('table', {class: 'sortable'}, element('caption', {text: 'Elements with the worst figures of the whole mesh, worst first of each kind; the numbers are those of the rings in the section picture.'}),
+  const table = element('table', {class: 'sortable'}, element('caption', {text: 'Of the whole mesh' + (page.meshes.length > 1 ? ' ' + page.meshes[0].name : '') + ', worst first of each kind; the numbers are those of the rings in the section picture.'}),
       element('thead', {}, element('tr', {}, ...head, element('th', {scope: 'col', class: 'jump text', text: 'Show'}))), body);
   box.append(element('div', {class: 'table tall'}, table));
   makeSortable(table);

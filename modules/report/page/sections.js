@@ -7,6 +7,7 @@ class SectionView {
     this.shown = shown;  // per label place: is it switched on?
     this.marks = marks;  // {at: stack coordinates, name}
     this.base = pictures(0);
+    this.labels = labels;
     this.planes = this.base.planes;
     this.canvas = byId('section-canvas');
     this.slider = byId('section-slider');
@@ -35,7 +36,7 @@ class SectionView {
     if (!cuts) return fallback;
     let best = fallback, most = -1;
     for (let i = 0; i < this.planes.length; i += 2) {
-      const size = cuts.offsets[i + 1] - cuts.offsets[i];
+      const size = i % cuts.step === 0 ? cuts.offsets[i + 1] - cuts.offsets[i] : 0;
       if (size > most) { most = size; best = i; }
     }
     return best;
@@ -71,7 +72,7 @@ class SectionView {
 
   cut(mesh, plane) {
     const c = pictures(mesh).cuts;
-    return c ? this.cached('cut' + mesh + '-' + plane, async () => readPolylines(await chunk(mesh, c, plane), c.unit_mm)) : [];
+    return c && plane % c.step === 0 ? this.cached('cut' + mesh + '-' + plane, async () => readPolylines(await chunk(mesh, c, plane), c.unit_mm, placesOf[mesh])) : [];
   }
 
   /** The slices that a plane shows: its own, or the two beside it. */
@@ -83,14 +84,14 @@ class SectionView {
   async pixels(section) {
     const s = this.base.slices;
     if (!s || section % s.step !== 0) return null;
-    return this.cached('slice' + section, async () => readRuns(await chunk(0, s, section), s.window[2] * s.window[3]));
+    return this.cached('slice' + section, async () => readRuns(await chunk(0, s, section), s.window[2] * s.window[3], placesOf[0]));
   }
 
   async contours(plane) {
     const c = this.base.contours, out = [];
     if (!c) return out;
     for (const k of this.slicesOf(plane))
-      out.push({section: k, lines: await this.cached('contour' + k, async () => readPolylines(await chunk(0, c, k), c.unit_mm))});
+      out.push({section: k, lines: await this.cached('contour' + k, async () => readPolylines(await chunk(0, c, k), c.unit_mm, placesOf[0]))});
     return out;
   }
 
@@ -176,7 +177,7 @@ class SectionView {
       if (i >= 0 && j >= 0 && i < s.window[2] && j < s.window[3])
         for (const k of this.slicesOf(this.index)) {
           const pixels = await this.pixels(k);
-          if (pixels) names.push(labelText(labelList()[pixels[j * s.window[2] + i]]));
+          if (pixels) names.push(labelText(labels[pixels[j * s.window[2] + i]]));
         }
       if (names.length > 0) text += ': ' + [...new Set(names)].join(' below, ') + (new Set(names).size > 1 ? ' above' : '');
     }
@@ -200,7 +201,7 @@ class SectionView {
     const plane = this.planes[this.index], count = this.planes.filter(p => Number.isInteger(p.section)).length;
     const name = sectionText(plane.section);
     const here = this.marks.filter(m => nearestPlane(this.planes, m.z) === this.index).map(m => m.name);
-    const text = name.charAt(0).toUpperCase() + name.slice(1) + ' of ' + count + ', at ' + figure(plane.z, 5) + ' mm along the stack' +
+    const text = name.charAt(0).toUpperCase() + name.slice(1) + ' of ' + count + ', at ' + figure(plane.z, 5) + ' mm' + (this.base.planes_are === 'planes' ? ' across z' : ' along the stack') +
         (here.length ? '; marked: ' + here.join(', ') : '');
     byId('section-text').textContent = text;
     this.slider.setAttribute('aria-valuetext', text);
@@ -296,7 +297,7 @@ class SectionView {
   fill(g, pixels, m, alpha) {
     const [x0, y0, w, h] = this.base.slices.window, [px, py] = this.base.pixel_mm;
     const image = new ImageData(w, h), bytes = new Uint32Array(image.data.buffer);
-    const colours = labelList().map((l, i) => {
+    const colours = labels.map((l, i) => {
       const [r, gr, b] = rgb(l.colour);
       return i > 0 && this.shown[i] ? (Math.round(alpha * 255) << 24 | b << 16 | gr << 8 | r) >>> 0 : 0;
     });
@@ -340,7 +341,7 @@ class SectionView {
     g.lineWidth = 1.2 * line;
     g.setLineDash(n === 1 ? [4 * line, 3 * line] : []);
     for (const [key, path] of paths) {
-      g.strokeStyle = key < 0 ? '#555' : this.dark(labelList()[key].colour);
+      g.strokeStyle = key < 0 ? '#555' : this.dark(labels[key].colour);
       g.stroke(path);
     }
     g.setLineDash([]);
@@ -352,11 +353,11 @@ class SectionView {
 
   drawContours(g, lines, m, line, n) {
     if (byId('show-labels').checked && n < 0)
-      for (let label = 1; label < labelList().length; ++label) {
+      for (let label = 1; label < labels.length; ++label) {
         if (!this.shown[label]) continue;
         const path = new Path2D();
         for (const loop of this.loops(lines, label)) this.trace(path, loop, m);
-        g.fillStyle = 'rgba(' + rgb(labelList()[label].colour).join(',') + ',0.3)';
+        g.fillStyle = 'rgba(' + rgb(labels[label].colour).join(',') + ',0.3)';
         g.fill(path, 'evenodd');
       }
     if (!byId('show-outlines').checked) return;
@@ -367,7 +368,7 @@ class SectionView {
       if (a === b) continue;
       const path = new Path2D();
       this.trace(path, l.points, m);
-      g.strokeStyle = this.dark(labelList()[Math.max(a, b)].colour);
+      g.strokeStyle = this.dark(labels[Math.max(a, b)].colour);
       g.stroke(path);
     }
     g.setLineDash([]);
@@ -474,7 +475,8 @@ class SectionView {
     }
     const c = this.base.cuts;
     if (c) box.append(element('span', {class: 'dim', text: 'Cuts are of the whole mesh, drawn true to ' + figure(c.tolerance_mm, 2) + ' mm.' +
-        (this.base.slices && this.base.slices.step > 1 ? ' To keep the file small, every ' + this.base.slices.step + 'th slice of labels is shown.' : '')}));
+        (this.base.slices && this.base.slices.step > 1 ? ' To keep the file small, one slice of labels in ' + this.base.slices.step + ' is shown.' : '') +
+        (c.step > 1 ? ' To keep the file small, the cut is shown in one of ' + c.step + ' planes.' : '')}));
   }
 
   async thumbnail(index) {

@@ -172,7 +172,7 @@ class SolidView {
   recolour() {
     const s = this.mesh.surface, n = s.triangles.length / 3;
     const front = this.front.geometry.attributes.color, back = this.back.geometry.attributes.color;
-    const colours = labelList().map(l => rgb(l.colour)), index = new Uint32Array(3 * n);
+    const colours = labels.map(l => rgb(l.colour)), index = new Uint32Array(3 * n);
     const unit = this.mesh.p.surface.distance_unit_mm, top = this.distanceTop();
     let shown = 0;
     for (let t = 0; t < n; ++t) {
@@ -267,7 +267,7 @@ class SolidView {
     if (t) {
       const q = t.positions, n = q.length / 3, side = new Float32Array(n);
       for (let i = 0; i < n; ++i) side[i] = normal.x * q[3 * i] + normal.y * q[3 * i + 1] + normal.z * q[3 * i + 2] + constant;
-      const palette = labelList().map(l => rgb(l.colour)), at = new Float32Array(12);
+      const palette = labels.map(l => rgb(l.colour)), at = new Float32Array(12);
       const pale = [214, 219, 224];
       for (let e = 0, k = 0; e < t.labels.length; ++e, k += 4) {
         if (!this.shown[t.labels[e]]) continue;
@@ -461,7 +461,7 @@ class SolidView {
   }
 
   /** Shows a place (world mm) with its element; cuts the mesh open there when `inside`. */
-  focus(at, corners, inside) {
+  focus(at, corners, inside, extent = 0) {
     const m = this.mesh, local = p => p.map((x, k) => x - m.centre[k]), p = local(at);
     const points = corners.map(local), faces = [], lines = [];
     const push = (list, ...which) => { for (const i of which) list.push(...points[i]); };
@@ -474,7 +474,7 @@ class SolidView {
     }
     this.ring.position.set(...p);
     this.ring.visible = true;
-    let size = 0;
+    let size = extent / 2;
     for (const c of points) size = Math.max(size, Math.hypot(...c.map((x, k) => x - p[k])));
     const distance = Math.min(2 * m.radius, Math.max(14 * size, 0.35 * m.radius));
     if (inside) {

@@ -1,0 +1,89 @@
+// --report R.html of the program: one file, small, private, and it works in a real browser.
+#include "../image/image_files.h"
+#include "program.h"
+
+namespace program {
+namespace {
+
+constexpr std::size_t kMostBytes = 25 * 1000 * 1000;
+
+class HtmlReport : public ProgramTest {
+ protected:
+  /// Opens a page in headless Chromium; skips where there is none.
+  static void opens(const std::string& html, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), html);
+    const Ended ended = python("report_in_browser.py", more);
+    if (ended.code == 77) GTEST_SKIP() << ended.out;
+    EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
+  }
+};
+
+TEST_F(HtmlReport, OpensOfflineInABrowserAndDoesWhatItShould) {
+  succeeds({"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
+  EXPECT_LT(read_file(out("R.html")).size(), kMostBytes);
+  opens(out("R.html"));
+}
+
+TEST_F(HtmlReport, SaysThatThereIsNoWebGLAndStaysUsable) {
+  succeeds({"surface", testdata("shells.nii.gz"), "-o", out("a.stl"), "--report", out("R.html")});
+  opens(out("R.html"), {"--no-webgl"});
+}
+
+TEST_F(HtmlReport, ShowsContourInput) {
+  succeeds({"surface", testdata("branch.cnt"), "-o", out("a.stl"), "--report", out("R.html")});
+  opens(out("R.html"));
+}
+
+TEST_F(HtmlReport, HoldsTheFiguresOfTheJson) {
+  succeeds({"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
+  const Json report = this->report();
+  const std::string html = read_file(out("R.html"));
+  for (const auto& label : report["labels"]) {
+    char volume[40];
+    std::snprintf(volume, sizeof volume, "data-v=\"%.9g\"", label["surface_volume_mm3"].get<double>());
+    EXPECT_NE(html.find(volume), std::string::npos) << volume;
+    std::snprintf(volume, sizeof volume, "data-v=\"%.9g\"", label["dice"].get<double>());
+    EXPECT_NE(html.find(volume), std::string::npos) << volume;
+  }
+}
+
+TEST_F(HtmlReport, HasNoPatientFields) {
+  using namespace image_files;
+  Nifti header;
+  header.dim = {3, 6, 6, 6, 1, 1, 1, 1};
+  std::string bytes = header.header() + pack<std::uint8_t>(std::vector<int>(216, 1));
+  bytes.replace(148, 14, "DOE^JANE 1970");  // descrip
+  bytes.replace(14, 8, "MRN12345");         // db_name
+  bytes.replace(328, 8, "Dr. Hyde");        // intent_name
+  bytes.replace(228, 8, "ward7.nii");       // aux_file
+  succeeds({"mesh", write("labels.nii", bytes), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
+  for (const char* file : {"R.html", "R.json"})
+    for (const char* part : {"DOE^JANE", "JANE", "MRN12345", "Dr. Hyde", "ward7"})
+      EXPECT_EQ(read_file(out(file)).find(part), std::string::npos) << file << " tells " << part;
+}
+
+TEST_F(HtmlReport, IsWrittenWholeOrNotAtAll) {
+  fails(5, {"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("absent/R.html")}, {"absent"});
+  fails(2, {"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.pdf")}, {".json or .html"});
+}
+
+TEST_F(HtmlReport, SameBytesButForTimesOnOneThreadAndTwo) {
+  const auto without_times = [&](const std::string& threads) {
+    succeeds({"mesh", testdata("shells.nii.gz"), "-o", out("a.vtu"), "--threads", threads, "--report", out("R.html")});
+    std::string html = read_file(out("R.html"));
+    const std::size_t at = html.find("id=\"provenance\""), end = html.find("</section>", at);
+    return html.erase(at, end - at);
+  };
+  EXPECT_TRUE(without_times("1") == without_times("2"));
+}
+
+TEST_F(HtmlReport, OfRealDataStaysSmallAndOpens) {
+  const std::string torso = shared_data("torso_totalseg/torso_3mm_61labels.nii.gz");
+  if (torso.empty()) GTEST_SKIP() << "no ../shared/data/torso_totalseg";
+  succeeds({"surface", torso, "--no-enhance", "-o", out("a.vtp"), "--report", out("R.html")});
+  EXPECT_LT(read_file(out("R.html")).size(), kMostBytes);
+  opens(out("R.html"), {"--label", "5"});
+}
+
+}  // namespace
+}  // namespace program
