@@ -205,12 +205,14 @@ bool ImproveMoves::collapse(std::int32_t t) {
   return false;
 }
 
-bool ImproveMoves::try_insert(std::int32_t t, const Vec3& start, double enough) {
-  // The cavity grows through the faces that the point sees worst, as long as that helps.
-  cavity_ = {t};
+bool ImproveMoves::try_insert(Vec3 p, double enough) {
+  // The cavity grows through the inner faces that the point sees worst, as long as that helps.
   m_.begin_marks();
-  m_.mark(t);
-  Vec3 p = start;
+  double old_worst = 2;
+  for (const std::int32_t t : cavity_) {
+    m_.mark(t);
+    old_worst = std::min(old_worst, m_.quality[t]);
+  }
   struct Side {
     Corners v;  // v[0] is the cavity's corner, to be replaced by the point
     std::int32_t beyond;
@@ -225,11 +227,12 @@ bool ImproveMoves::try_insert(std::int32_t t, const Vec3& start, double enough) 
       sides.push_back({v, n, tet_quality(p, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]])});
     }
   };
-  add_sides(t);
-  double old_worst = m_.quality[t];
+  for (const std::int32_t t : cavity_) add_sides(t);
   while (cavity_.size() < kLargestCavity) {
-    const auto worst = std::min_element(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.quality < b.quality; });
-    if (worst->quality > enough || worst->beyond < 0) break;
+    const Side* worst = nullptr;
+    for (const Side& s : sides)
+      if (s.beyond >= 0 && (worst == nullptr || s.quality < worst->quality)) worst = &s;
+    if (worst == nullptr || worst->quality > enough) break;
     // A face beyond which the tet is good enough is better left.
     if (worst->quality > old_worst && m_.quality[worst->beyond] > worst->quality && worst->quality > 0.5 * enough && cavity_.size() > 12) break;
     const std::int32_t next = worst->beyond;
@@ -256,13 +259,19 @@ bool ImproveMoves::try_insert(std::int32_t t, const Vec3& start, double enough) 
   return false;
 }
 
-bool ImproveMoves::insert(std::int32_t t, double enough) {
+Vec3 ImproveMoves::centre_of_cavity() const {
+  Vec3 sum;
+  for (const std::int32_t t : cavity_)
+    for (const std::int32_t v : m_.tets[t].v) sum = sum + m_.points[v];
+  return (0.25 / static_cast<double>(cavity_.size())) * sum;
+}
+
+bool ImproveMoves::insert(std::int32_t t, double enough, bool thorough) {
   const Corners v = m_.tets[t].v;
-  Vec3 centre;
-  for (const std::int32_t u : v) centre = centre + 0.25 * m_.points[u];
-  if (try_insert(t, centre, enough)) return true;
-  // A sliver has two long edges opposite each other: the middle between their middles is its centre; the middle of the
-  // longest edge opens a cap.
+  cavity_ = {t};
+  const Vec3 centre = centre_of_cavity();
+  if (try_insert(centre, enough)) return true;
+  // The middle of the longest edge opens a cap.
   double longest = 0;
   Vec3 middle;
   for (int i = 0; i < 4; ++i)
@@ -270,7 +279,27 @@ bool ImproveMoves::insert(std::int32_t t, double enough) {
       const double length = norm(m_.points[v[j]] - m_.points[v[i]]);
       if (length > longest) longest = length, middle = 0.5 * (m_.points[v[i]] + m_.points[v[j]]);
     }
-  return try_insert(t, 0.7 * middle + 0.3 * centre, enough);
+  cavity_ = {t};
+  if (try_insert(0.7 * middle + 0.3 * centre, enough)) return true;
+  if (!thorough) return false;
+  // A tet that lies flat on the surface needs a point off it.
+  cavity_ = {t};
+  for (const std::int32_t n : m_.tets[t].n)
+    if (n >= 0) cavity_.push_back(n);
+  if (try_insert(centre_of_cavity(), enough)) return true;
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j) {
+      if (!m_.ring(t, v[i], v[j], 2 * kLongestRing, around_, ring_)) continue;
+      Vec3 sum;
+      for (const std::int32_t r : ring_) sum = sum + m_.points[r];
+      const Vec3 around = (1 / static_cast<double>(ring_.size())) * sum, on = 0.5 * (m_.points[v[i]] + m_.points[v[j]]);
+      for (const double share : {0.5, 0.15}) {
+        cavity_ = around_;
+        if (try_insert(share * around + (1 - share) * on, enough)) return true;
+        m_.ring(t, v[i], v[j], 2 * kLongestRing, around_, ring_);
+      }
+    }
+  return false;
 }
 
 }  // namespace stackmesh::volume

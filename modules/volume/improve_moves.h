@@ -20,8 +20,9 @@ class ImproveMoves {
   bool remove_face(std::int32_t t);
   /// Merges a movable corner of t into another point of the tets around it.
   bool collapse(std::int32_t t);
-  /// Empties a cavity around t and fills it from a new point.
-  bool insert(std::int32_t t, double enough);
+  /// Empties a cavity around t and fills it from a new point. `thorough`: cavities of t and its neighbours, and around
+  /// its edges, are tried, too.
+  bool insert(std::int32_t t, double enough, bool thorough);
 
  private:
   // A fan is the tets of one point, their corner 0.
@@ -29,7 +30,9 @@ class ImproveMoves {
   double fan_quality(const std::vector<ImproveMesh::Corners>& fan, const Vec3& p, double stop) const;
   Vec3 best_place(const std::vector<ImproveMesh::Corners>& fan, Vec3 p, double& quality, double enough);
   Vec3 gradient(const ImproveMesh::Corners& tet, const Vec3& p, double h) const;
-  bool try_insert(std::int32_t t, const Vec3& start, double enough);
+  /// From `cavity_`, which is grown.
+  bool try_insert(Vec3 p, double enough);
+  Vec3 centre_of_cavity() const;
 
   ImproveMesh& m_;
   std::vector<std::int32_t> around_, ring_, cavity_;

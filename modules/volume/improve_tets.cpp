@@ -66,7 +66,7 @@ class Improver {
     if (any) return true;
     if (pass < 1) return false;
     if (moves_.collapse(t)) return ++c_.collapsed, true;
-    if (moves_.insert(t, goal_)) return ++c_.inserted, true;
+    if (moves_.insert(t, goal_, pass >= 2 && m_.quality[t] < 0.75 * goal_)) return ++c_.inserted, true;
     return false;
   }
 
