@@ -24,7 +24,7 @@ struct MeshArguments {
   ContourArguments contours;
   TerminalArguments terminal;
   EnhanceArguments enhance;
-  std::vector<std::string> outputs, reports;
+  std::vector<std::string> outputs, reports, names;
   std::string caps = "auto", space = "lps";
   double snap_mm = 0, timeout_s = 600;
   double max_volume = 0, radius_edge = 0, dihedral = 0;
@@ -41,6 +41,8 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
                                               : "output: .stl .ply .obj .off .vtp; repeatable")
       ->required()->allow_extra_args(false);
   command.add_option("--report", a.reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
+  command.add_option("--names", a.names, "FILE.json: written, the labels' numbers, names and colours; any other: read, a Slicer colour table or an ITK-SNAP label description")
+      ->allow_extra_args(false);
   a.contours.add_to(command);
   command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
   command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round")->capture_default_str();
@@ -96,6 +98,12 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.space = a.space;
   o.outputs = a.outputs;
   o.reports = a.reports;
+  for (const std::string& path : a.names) {
+    const bool is_output = path.size() > 5 && path.compare(path.size() - 5, 5, ".json") == 0;
+    if (is_output) o.names_outputs.push_back(path);
+    else if (o.input.names.empty()) o.input.names = path;
+    else fail_usage("two label tables", "--names " + path, "give one table to read; files that end in .json are written");
+  }
   o.write.per_label = a.per_label;
   o.write.msh2 = a.msh2;
   o.strict = a.strict;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "fem/label_table.h"
 #include "image/dicom_series.h"
 #include "image/read_contours.h"
 #include "image/read_labels.h"
@@ -77,6 +78,7 @@ void read_volume(const InputOptions& options, Input& input) {
   LabelVolume volume = read_label_volume(options.paths[0], read);
   input.kind = volume.kind;
   input.warnings = volume.warnings;
+  if (!options.names.empty()) apply_label_table(read_label_table(options.names), volume.labels);
   const std::vector<std::size_t> keep = resolve_labels(volume.labels, options.labels);
   if (options.merge || keep.size() + 1 < volume.labels.size()) volume = select_labels(std::move(volume), keep, options.merge);
   input.labels.assign(volume.labels.begin() + 1, volume.labels.end());
@@ -100,6 +102,7 @@ Input read_input(const InputOptions& options) {
   if (is_contour_input(options.paths[0])) read_contours(options, input);
   else if (const std::string file = structure_set_in(options.paths); !file.empty()) read_structures(options, file, input);
   else read_volume(options, input);
+  if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);
   return input;
 }
 

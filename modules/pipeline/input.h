@@ -17,6 +17,7 @@ struct InputOptions {
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   std::string series;                               ///< DICOM: series instance UID where a folder holds several
   bool merge = false;                               ///< selected labels become one
+  std::string names;                                ///< label table (fem/label_table.h) that names labels; empty: none
 };
 
 /// The input as read: a volume or, for contours, sections.

@@ -404,6 +404,7 @@ class MeshRun {
         write_volume(files_, path, *mesh_, write_options());
       }
     }
+    write_names();
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -436,6 +437,12 @@ class MeshRun {
       const std::string text = ends_with(path, ".html") ? to_html({{"mesh", &report_, &pictures_}}) : to_json(report_);
       files_.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
     }
+  }
+
+  void write_names() {
+    const std::string text = names_to_json(report_);
+    for (const std::string& path : o_.names_outputs)
+      files_.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
   }
 
   const MeshRunOptions& o_;

@@ -34,6 +34,7 @@ struct MeshRunOptions {
   bool many_tets = false;                         ///< more than 10 million tetrahedra are wanted
   int order = 1;                                  ///< of the tetrahedra: 1 linear, 2 quadratic (10 nodes)
   std::string space = "lps";                      ///< "lps" or "ras"
+  std::vector<std::string> names_outputs;         ///< .json files for the labels' numbers, names and colours
   std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format
   MeshWriteOptions write;                         ///< space and labels are set by the run
   bool strict = false;                            ///< a lost detail is an error

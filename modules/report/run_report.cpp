@@ -228,4 +228,10 @@ Limits read_limits(const std::string& path) {
   return limits;
 }
 
+std::string names_to_json(const RunReport& r) {
+  Json labels = Json::array();
+  for (const LabelReport& l : r.labels) labels.push_back({{"label", l.label}, {"name", l.name}, {"colour", l.colour ? Json(*l.colour) : Json(nullptr)}});
+  return Json{{"labels", labels}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace stackmesh

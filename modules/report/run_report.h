@@ -108,4 +108,7 @@ std::vector<std::pair<std::string, double>> named_limits(const Limits& limits);
 /// @throws Error(input) for an unreadable file, an unknown field or what is not a number.
 Limits read_limits(const std::string& path);
 
+/// Its labels alone, for --names: {"labels": [{"label", "name", "colour"}]}.
+std::string names_to_json(const RunReport& report);
+
 }  // namespace stackmesh
