@@ -50,15 +50,25 @@ class Joiner {
   /// Calls visit(voxel of the slice, segments there) for every voxel that has any of those asked for.
   template <class Visit>
   void each_voxel(int k, Visit visit) const {
-    const std::vector<std::vector<std::uint16_t>> layers = layers_(k);
-    std::vector<std::size_t> here;
     const std::size_t pixels = static_cast<std::size_t>(volume_.size[0]) * volume_.size[1];
+    std::vector<std::uint16_t> first(pixels, 0);                  // the first segment of each voxel, and
+    std::vector<std::pair<std::size_t, std::uint16_t>> more;  // the others of the few that have several
+    for (const auto& layer : layers_(k))
+      for (std::size_t i = 0; i < pixels; ++i) {
+        const std::uint16_t s = layer[i];
+        if (s == 0 || s == first[i] || !is_asked_[s - 1]) continue;
+        if (first[i] == 0) first[i] = s;
+        else more.emplace_back(i, s);
+      }
+    std::sort(more.begin(), more.end());
+    more.erase(std::unique(more.begin(), more.end()), more.end());
+    std::size_t next = 0;
+    std::vector<std::size_t> here;
     for (std::size_t i = 0; i < pixels; ++i) {
-      here.clear();
-      for (const auto& layer : layers)
-        if (layer[i] != 0 && is_asked_[layer[i] - 1] && std::find(here.begin(), here.end(), layer[i] - 1u) == here.end())
-          here.push_back(layer[i] - 1u);
-      if (!here.empty()) visit(i, here);
+      if (first[i] == 0) continue;
+      here.assign(1, first[i] - 1u);
+      for (; next < more.size() && more[next].first == i; ++next) here.push_back(more[next].second - 1u);
+      visit(i, here);
     }
   }
 
