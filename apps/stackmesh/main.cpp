@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   program.footer("stackmesh COMMAND --help tells a command's options.\nLicence: AGPL-3.0-or-later.");
   stackmesh::app::add_mesh_command(program);
   stackmesh::app::add_surface_command(program);
+  stackmesh::app::add_fem_command(program);
   stackmesh::app::add_contours_command(program);
   stackmesh::app::add_info_command(program);
   stackmesh::app::add_validate_command(program);

@@ -174,6 +174,15 @@ void add(CLI::App& program, const char* name, const char* description, Target ta
 
 }  // namespace
 
+MeshOptionSource add_mesh_options(CLI::App& command, int default_order) {
+  auto a = std::make_shared<MeshArguments>();
+  a->order = default_order;
+  add_options(command, *a, Target::volume);
+  CLI::App* const app = &command;
+  return {[a, app] { return to_options(*app, *a, Target::volume); }, [a] { return a->terminal.make_progress(); },
+          [a] { return a->terminal.quiet; }};
+}
+
 void add_mesh_command(CLI::App& program) { add(program, "mesh", "Label stack to a verified volume mesh (and its surface)", Target::volume); }
 void add_surface_command(CLI::App& program) { add(program, "surface", "Label stack to a verified surface", Target::surface); }
 

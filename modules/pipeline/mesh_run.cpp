@@ -23,7 +23,8 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 class MeshRun {
  public:
-  MeshRun(const MeshRunOptions& options, Progress& progress) : o_(options), clock_(progress, report_.stages), progress_(progress) {}
+  MeshRun(const MeshRunOptions& options, Progress& progress, const ModelStage& model)
+      : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
   RunReport run() {
     check_outputs();
@@ -39,6 +40,7 @@ class MeshRun {
     if (o_.target == Target::volume && is_sound()) clock_.run("volume", [&] { fill(); });
     clock_.run("validate", [&] { judge_rest(); });
     const std::string refusal = verdict();
+    if (refusal.empty() && model_ && mesh_) clock_.run("model", [&] { make_model(); });
     clock_.run("write", [&] {
       if (refusal.empty()) write();
       if (wants_html()) draw(refusal.empty());
@@ -400,11 +402,46 @@ class MeshRun {
       if (is_surface_format(path)) {
         write_surface(files_, path, surface_, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);
-      } else {
+      } else if (!model_) {
         write_volume(files_, path, *mesh_, write_options());
       }
     }
     write_names();
+  }
+
+  /// The mesh in the frame that will be written, for the solver model.
+  void make_model() {
+    MeshProduct product;
+    if (wants_html()) {
+      product.mesh = *mesh_;  // the page shows it
+    } else {
+      product.mesh = std::move(*mesh_);
+      mesh_.reset();
+    }
+    product.labels = input_.labels;
+    product.space = world_;
+    product.up = frame_.axes[2];
+    if (input_.volume) {
+      const LabelVolume& v = *input_.volume;
+      ImageBox box;
+      box.origin = v.world(-0.5, -0.5, -0.5);
+      box.axes = v.axes;
+      box.spacing_mm = v.spacing_mm;
+      for (int d = 0; d < 3; ++d) box.length_mm[d] = v.spacing_mm[d] * v.size[d];
+      product.image = box;
+    }
+    if (world_ == WorldSpace::ras) {
+      to_ras(product.mesh.points);
+      std::vector<Vec3> turned = {product.up};
+      if (product.image) turned.insert(turned.end(), {product.image->origin, product.image->axes[0], product.image->axes[1], product.image->axes[2]});
+      to_ras(turned);
+      product.up = turned[0];
+      if (product.image) {
+        product.image->origin = turned[1];
+        for (int d = 0; d < 3; ++d) product.image->axes[d] = turned[2 + d];
+      }
+    }
+    model_(std::move(product), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -446,6 +483,7 @@ class MeshRun {
   }
 
   const MeshRunOptions& o_;
+  const ModelStage& model_;
   RunReport report_;
   StageClock clock_;
   Progress& progress_;
@@ -466,6 +504,8 @@ class MeshRun {
 
 }  // namespace
 
-RunReport run_mesh(const MeshRunOptions& options, Progress& progress) { return MeshRun(options, progress).run(); }
+RunReport run_mesh(const MeshRunOptions& options, Progress& progress, const ModelStage& model) {
+  return MeshRun(options, progress, model).run();
+}
 
 }  // namespace stackmesh

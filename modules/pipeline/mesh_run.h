@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -7,7 +8,9 @@
 
 #include "base/progress.h"
 #include "contour/extract.h"
+#include "base/atomic_file.h"
 #include "enhance/enhance.h"
+#include "fem/name_sets.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
 #include "report/run_report.h"
@@ -44,9 +47,21 @@ struct MeshRunOptions {
   std::vector<std::string> notes;                 ///< warnings of the caller, for the report
 };
 
+/// A verified volume mesh and where it lies; coordinates are those that will be written.
+struct MeshProduct {
+  TetMesh mesh;
+  std::vector<LabelInfo> labels;
+  WorldSpace space = WorldSpace::lps;
+  Vec3 up = {0, 0, 1};            ///< stacking axis, from the first slice to the last
+  std::optional<ImageBox> image;  ///< of a label volume
+};
+
+/// Takes the place of writing volume files: gets the mesh, adds to the report, writes to the files.
+using ModelStage = std::function<void(MeshProduct product, RunReport& report, AtomicFiles& files)>;
+
 /// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write. Everything
-/// that is written appears whole or not at all.
+/// that is written appears whole or not at all. With `model`, the verified volume goes there instead of into files.
 /// @throws Error: input, output, usage; no_result after the report (and the offending triangles) were written.
-RunReport run_mesh(const MeshRunOptions& options, Progress& progress);
+RunReport run_mesh(const MeshRunOptions& options, Progress& progress, const ModelStage& model = {});
 
 }  // namespace stackmesh

@@ -14,6 +14,6 @@ stackmesh_module(report
   SOURCES run_report.cpp comparison.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
           histograms.cpp worst_places.cpp label_colours.cpp packed.cpp
   HEADERS run_report.h comparison.h html_report.h
-  USES base model validate
+  USES base model validate fem
   PRIVATE nlohmann_json::nlohmann_json ZLIB::ZLIB)
 target_sources(stackmesh_report PRIVATE ${page_cpp})

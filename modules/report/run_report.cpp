@@ -129,6 +129,41 @@ Json provenance(const std::optional<Provenance>& p) {
           {"finished_utc", p->finished_utc}};
 }
 
+Json fem(const FemReport& f) {
+  Json sets = Json::array(), pairs = Json::array(), materials = Json::array(), skins = Json::array();
+  for (const FemSet& s : f.sets) sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
+  for (const SurfacePair& p : f.pairs) pairs.push_back({{"name", p.name}, {"primary", p.primary}, {"secondary", p.secondary}});
+  for (const MaterialRow& m : f.materials)
+    materials.push_back({{"label", m.label},
+                         {"name", m.name},
+                         {"law", m.law.empty() ? Json(nullptr) : Json(m.law)},
+                         {"elements", m.elements},
+                         {"modulus_min_mpa", m.young_min_mpa},
+                         {"modulus_mean_mpa", m.young_mean_mpa},
+                         {"modulus_max_mpa", m.young_max_mpa},
+                         {"poisson", m.poisson},
+                         {"density_mean_t_mm3", m.density_mean_t_mm3},
+                         {"clamped_low", m.clamped_low},
+                         {"clamped_high", m.clamped_high},
+                         {"materials", m.materials},
+                         {"bin_error_max_rel", m.bin_error_rel},
+                         {"voxels", m.voxels}});
+  for (const auto& [name, thickness] : f.skins) skins.push_back({{"name", name}, {"thickness_mm", thickness}});
+  return {{"order", f.order},
+          {"nodes", f.nodes},
+          {"elements", f.elements},
+          {"shells", f.shells},
+          {"units", "mm, N, MPa, t/mm3"},
+          {"image", f.image.empty() ? Json(nullptr) : Json(f.image)},
+          {"materials_path", f.materials_path.empty() ? Json(nullptr) : Json(f.materials_path)},
+          {"placeholder_materials", f.placeholder_materials},
+          {"sets", sets},
+          {"pairs", pairs},
+          {"materials", materials},
+          {"skins", skins},
+          {"load_case", {{"supports", f.supports}, {"loaded_nodes", f.loaded_nodes}, {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}}}}};
+}
+
 }  // namespace
 
 namespace {
@@ -144,7 +179,7 @@ Json describe(const RunReport& r) {
   for (const Verdict& v : r.verdicts) verdicts.push_back(verdict(v));
   for (const Defect& d : r.defects) defects.push_back(defect(d));
   const bool grid = r.input.dimensions[0] > 0;
-  const Json j = {
+  Json j = {
       {"schema", 1},
       {"stackmesh", r.version},
       {"command", r.command},
@@ -177,6 +212,7 @@ Json describe(const RunReport& r) {
       {"limits", limits(r.limits)},
       {"provenance", provenance(r.provenance)},
       {"warnings", r.warnings}};
+  if (r.fem) j["fem"] = fem(*r.fem);
   return j;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "fem/assign_materials.h"
 #include "model/geometry.h"
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
@@ -63,6 +64,26 @@ struct Provenance {
   std::string finished_utc;  ///< ISO 8601
 };
 
+/// A set of a solver model.
+struct FemSet {
+  std::string name, note;
+  std::size_t nodes = 0, faces = 0;  ///< faces 0: a node set only
+};
+
+/// The solver model of `stackmesh fem`.
+struct FemReport {
+  int order = 2;
+  std::size_t nodes = 0, elements = 0, shells = 0;
+  std::string image, materials_path;  ///< "": none
+  bool placeholder_materials = false;
+  std::vector<FemSet> sets;
+  std::vector<SurfacePair> pairs;
+  std::vector<MaterialRow> materials;
+  std::vector<std::pair<std::string, double>> skins;  ///< name, thickness in mm
+  std::size_t supports = 0, loaded_nodes = 0;
+  Vec3 force_n;  ///< sum of the nodal forces
+};
+
 /// Everything a run reports (modules/report/README.md lists the fields of the JSON form).
 struct RunReport {
   std::string version, command;
@@ -86,6 +107,7 @@ struct RunReport {
   std::optional<SurfaceCheck> surface;
   std::optional<VolumeCheck> volume;
   std::string closure = "skipped";  ///< verified, failed or skipped
+  std::optional<FemReport> fem;     ///< of `fem` only
   std::vector<LabelReport> labels;
   std::optional<JudgedMesh> mesh;  ///< of `validate`
   std::optional<Provenance> provenance;

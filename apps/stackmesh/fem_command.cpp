@@ -1,0 +1,105 @@
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "commands.h"
+#include "fem/material_law.h"
+#include "options.h"
+#include "pipeline/fem_run.h"
+
+namespace stackmesh::app {
+namespace {
+
+struct FemArguments {
+  std::string image, materials, names, label_array;
+  std::vector<std::string> parts, skins, selections;
+  int erode_px = 0;
+  double sharp_deg = 50;
+};
+
+/// "NAME=TEXT" to its two sides.
+std::pair<std::string, std::string> at_equals(const std::string& text, const std::string& option, const std::string& form) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos || at == 0 || at + 1 == text.size()) fail_usage("'" + text + "' is not " + form, option, "see stackmesh fem --help");
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+void add_options(CLI::App& command, FemArguments& a) {
+  std::string laws;
+  for (const std::string& name : known_laws()) laws += (laws.empty() ? "" : ", ") + name;
+  command.get_option("INPUT")->description("labels as for mesh, or a volume mesh: .vtu .msh .inp .vtk .mesh");
+  command.add_option("--image", a.image, "CT or MRI intensities for materials: .nii .nii.gz .nrrd .nhdr .mha .mhd .gipl, any grid");
+  command.add_option("--materials", a.materials, "material law and load case, JSON (docs/fem.md); laws built in: " + laws);
+  command.add_option("--erode", a.erode_px, "voxels taken off a label's border before its intensities are used (default: the law file's, 0)")->check(CLI::Range(0, 20));
+  command.add_option("--names", a.names, "label names: a Slicer colour table or an ITK-SNAP label description");
+  command.add_option("--parts", a.parts, "A=1,3 B=2,4: nodes are shared within a part and doubled between parts")->expected(1, -1);
+  command.add_option("--skin", a.skins, "5=0.3: shells of that thickness (mm) on the outer faces of a label; repeatable")->allow_extra_args(false);
+  command.add_option("--select", a.selections,
+                     "NAME=CRITERION[&CRITERION]: box:x0,y0,z0,x1,y1,z1 sphere:x,y,z,r plane:x,y,z,nx,ny,nz[,tolerance] "
+                     "normal:nx,ny,nz,degrees points:FILE.mrk.json,r of:LABEL in:SET; repeatable")
+      ->allow_extra_args(false);
+  command.add_option("--sharp", a.sharp_deg, "a label's outer faces are split at edges that turn by more, degrees")->check(number_in(1, 180, "a number from 1 to 180"))->capture_default_str();
+  command.add_option("--label-array", a.label_array, "of a given mesh: the cell array that holds its labels");
+}
+
+FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRunOptions mesh) {
+  FemRunOptions o;
+  o.mesh = std::move(mesh);
+  o.mesh.command = "fem";
+  o.mesh.input.names = a.names;
+  o.image = a.image;
+  o.materials = a.materials;
+  if (command.get_option("--erode")->count() > 0) o.erode_px = a.erode_px;
+  for (const std::string& text : a.parts) o.parts.push_back(at_equals(text, "--parts", "NAME=LABELS"));
+  for (const std::string& text : a.skins) {
+    const auto [label, thickness] = at_equals(text, "--skin", "LABEL=MM");
+    o.skins.push_back({label, parse_number(thickness, "--skin")});
+    if (o.skins.back().second <= 0) fail_usage("the thickness '" + thickness + "' is not above 0", "--skin", "write --skin 5=0.3, in mm");
+  }
+  o.selections = a.selections;
+  o.sharp_deg = a.sharp_deg;
+  o.label_array = a.label_array;
+  if (o.mesh.contours.axis == StackAxis::x) o.up = {1, 0, 0};
+  if (o.mesh.contours.axis == StackAxis::y) o.up = {0, 1, 0};
+  if (!a.image.empty() && a.materials.empty())
+    fail_usage("--image needs a law that turns intensities into moduli", "command line", "give it with --materials LAW.json");
+  o.mesh.option_texts.push_back({"image", a.image.empty() ? "none" : a.image});
+  o.mesh.option_texts.push_back({"materials", a.materials.empty() ? "none" : a.materials});
+  return o;
+}
+
+void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
+  const FemReport& f = *r.fem;
+  std::printf("mesh      %zu nodes, %zu tetrahedra of %d nodes, %zu shells\n", f.nodes, f.elements, f.order == 2 ? 10 : 4, f.shells);
+  for (const FemSet& s : f.sets) std::printf("set       %-32s %7zu nodes %7zu faces  %s\n", s.name.c_str(), s.nodes, s.faces, s.note.c_str());
+  for (const MaterialRow& m : f.materials) {
+    std::printf("material  %-32s ", m.name.c_str());
+    if (f.placeholder_materials) std::printf("none given\n");
+    else if (m.law.empty()) std::printf("E %.5g MPa\n", m.young_mean_mpa);
+    else
+      std::printf("E %.5g to %.5g, mean %.5g MPa (%s); set to the floor %.1f %%, to the ceiling %.1f %%\n", m.young_min_mpa, m.young_max_mpa,
+                  m.young_mean_mpa, m.law.c_str(), 100 * m.clamped_low, 100 * m.clamped_high);
+  }
+  if (f.supports + f.loaded_nodes > 0)
+    std::printf("load case %zu supports, %zu loaded nodes, force (%.5g, %.5g, %.5g) N\n", f.supports, f.loaded_nodes, f.force_n.x, f.force_n.y, f.force_n.z);
+  for (const std::string& o : outputs) std::printf("written   %s\n", o.c_str());
+}
+
+}  // namespace
+
+void add_fem_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("fem", "Labels, or a volume mesh, to a solver model: sets, materials, deck");
+  const MeshOptionSource mesh = add_mesh_options(*command, 2);
+  auto a = std::make_shared<FemArguments>();
+  add_options(*command, *a);
+  command->callback([a, command, mesh] {
+    const FemRunOptions options = to_options(*command, *a, mesh.options());
+    const auto progress = mesh.progress();
+    const RunReport report = run_fem(options, *progress);
+    if (mesh.quiet()) return;
+    print_warnings(report.warnings);
+    print_summary(report, options.mesh.outputs);
+  });
+}
+
+}  // namespace stackmesh::app

@@ -1,0 +1,247 @@
+#include "pipeline/fem_run.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "fem/assign_materials.h"
+#include "fem/element_quality.h"
+#include "fem/label_table.h"
+#include "fem/load_case.h"
+#include "image/read_image.h"
+#include "meshio/read_mesh.h"
+#include "pipeline/stage_clock.h"
+#include "validate/check_volume.h"
+#include "volume/raise_order.h"
+
+namespace stackmesh {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+class FemRun {
+ public:
+  FemRun(const FemRunOptions& options, Progress& progress) : o_(options), progress_(progress) {}
+
+  RunReport run() {
+    // What the user wrote is read before anything long begins.
+    if (!o_.materials.empty()) {
+      plan_ = read_law(o_.materials);
+      if (o_.erode_px) plan_->mapping.erode_px = *o_.erode_px;
+      plan_->mapping.threads = o_.mesh.threads;
+    }
+    const std::vector<std::string>& inputs = o_.mesh.input.paths;
+    return inputs.size() == 1 && is_readable_mesh(inputs[0]) ? from_mesh(inputs[0]) : from_labels();
+  }
+
+ private:
+  RunReport from_labels() {
+    return run_mesh(o_.mesh, progress_, [&](MeshProduct product, RunReport& report, AtomicFiles& files) { model(std::move(product), report, files); });
+  }
+
+  RunReport from_mesh(const std::string& path) {
+    RunReport report;
+    StageClock clock(progress_, report.stages);
+    AtomicFiles files;
+    report.command = o_.mesh.command;
+    report.version = o_.mesh.version;
+    report.options = o_.mesh.option_texts;
+    report.warnings = o_.mesh.notes;
+    check_outputs();
+    MeshProduct product;
+    clock.run("read", [&] { product = read(path, report); });
+    clock.run("validate", [&] { check(product, report); });
+    if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
+      OrderOptions order;
+      order.threads = o_.mesh.threads;
+      clock.run("volume", [&] { product.mesh = raise_order(std::move(product.mesh), order).mesh; });
+    }
+    clock.run("model", [&] { model(std::move(product), report, files); });
+    report.peak_rss_mb = peak_memory_mb();
+    const std::string json = o_.mesh.reports.empty() ? "" : to_json(report);
+    for (const std::string& r : o_.mesh.reports)
+      files.write(r, [&](std::FILE* f) { std::fwrite(json.data(), 1, json.size(), f); });
+    files.commit();
+    return report;
+  }
+
+  void check_outputs() const {
+    for (const std::string& path : o_.mesh.outputs)
+      if (!is_volume_format(path))
+        fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose .inp .feb .bdf .msh .vtu .vtk");
+    for (const std::string& path : o_.mesh.reports)
+      if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
+    if (o_.mesh.space != "lps" && o_.mesh.space != "ras") fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
+  }
+
+  MeshProduct read(const std::string& path, RunReport& report) {
+    MeshReadOptions how;
+    how.label_array = o_.label_array;
+    MeshFile file = read_mesh(path, how);
+    if (file.tets.empty()) fail_input("the mesh has no tetrahedra", path, "give a volume mesh, or labels");
+    report.input.path = path;
+    report.input.kind = "mesh";
+    report.input.space = o_.mesh.space;
+    for (const std::string& note : file.notes) report.warnings.push_back(note);
+    if (file.label_source == LabelSource::none)
+      report.warnings.push_back(path + ": no cell array holds labels: every element has label 1 (name an array with --label-array)");
+    if (!file.space) report.warnings.push_back(path + ": does not say its frame; it is taken as LPS");
+    MeshProduct product;
+    product.space = o_.mesh.space == "ras" ? WorldSpace::ras : WorldSpace::lps;
+    product.up = o_.up;
+    if (file.space && *file.space == WorldSpace::none) product.space = WorldSpace::none;
+    else if (file.space.value_or(WorldSpace::lps) != product.space)
+      for (Vec3& p : file.points) p = {-p.x, -p.y, p.z};
+    product.mesh.points = std::move(file.points);
+    product.mesh.tets = std::move(file.tets);
+    product.mesh.mid = std::move(file.midside);
+    product.mesh.labels = std::move(file.tet_labels);
+    const std::set<Label> present(product.mesh.labels.begin(), product.mesh.labels.end());
+    for (const Label l : present) {
+      if (l <= 0) fail_input("a label of the mesh is not above 0", path + ", label " + std::to_string(l), "number labels from 1; 0 is the background");
+      product.labels.push_back({l, ""});
+      for (const LabelInfo& named : file.names)
+        if (named.number == l) product.labels.back() = named;
+    }
+    if (!o_.mesh.input.names.empty()) apply_label_table(read_label_table(o_.mesh.input.names), product.labels);
+    keep_labels(product);
+    return product;
+  }
+
+  /// --label and --merge.
+  void keep_labels(MeshProduct& product) const {
+    if (o_.mesh.input.labels.empty() && !o_.mesh.input.merge) return;
+    std::vector<LabelInfo> known = {{0, ""}};
+    known.insert(known.end(), product.labels.begin(), product.labels.end());
+    std::set<Label> keep;
+    std::vector<LabelInfo> kept;
+    for (const std::size_t k : resolve_labels(known, o_.mesh.input.labels)) {
+      keep.insert(known[k].number);
+      if (kept.empty() || !o_.mesh.input.merge) kept.push_back(known[k]);
+    }
+    TetMesh& m = product.mesh;
+    std::size_t to = 0;
+    for (std::size_t t = 0; t < m.tets.size(); ++t) {
+      if (keep.count(m.labels[t]) == 0) continue;
+      m.tets[to] = m.tets[t];
+      if (!m.mid.empty()) m.mid[to] = m.mid[t];
+      m.labels[to++] = o_.mesh.input.merge ? kept[0].number : m.labels[t];
+    }
+    m.tets.resize(to);
+    m.labels.resize(to);
+    if (!m.mid.empty()) m.mid.resize(to);
+    product.labels = std::move(kept);
+  }
+
+  void check(MeshProduct& product, RunReport& report) const {
+    TetMesh& mesh = product.mesh;
+    const ElementQuality quality = element_quality(mesh);
+    if (!quality.non_positive.empty()) {
+      std::string list;
+      for (std::size_t i = 0; i < std::min<std::size_t>(quality.non_positive.size(), 100); ++i)
+        list += (i > 0 ? ", " : "") + std::to_string(quality.non_positive[i] + 1);
+      if (quality.non_positive.size() > 100) list += ", ...";
+      fail_input(std::to_string(quality.non_positive.size()) + " of " + std::to_string(mesh.tets.size()) +
+                     " elements have a Jacobian that is not positive",
+                 report.input.path + ", elements " + list, "mesh it again, or turn the elements round where their nodes are in the wrong order");
+    }
+    if (o_.mesh.order == 1 && !mesh.mid.empty()) {
+      mesh.mid.clear();
+      report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
+    }
+    mesh.faces = faces_of_tets(mesh);
+    report.volume = check_volume(mesh);
+    if (!report.volume->conforms)
+      report.warnings.push_back("the mesh does not conform: faces or edges of its tetrahedra do not match");
+    for (const LabelInfo& l : product.labels) {
+      LabelReport row;
+      row.label = l.number;
+      row.name = l.name;
+      for (const auto& tets : report.volume->labels)
+        if (tets.label == l.number) {
+          row.tets = tets.tets;
+          row.tet_volume_mm3 = tets.volume_mm3;
+        }
+      report.labels.push_back(row);
+    }
+  }
+
+  void model(MeshProduct product, RunReport& report, AtomicFiles& files) {
+    const bool ras = product.space == WorldSpace::ras;
+    SetOptions sets;
+    sets.up = product.up;
+    sets.image = product.image;
+    sets.sharp_deg = o_.sharp_deg;
+    sets.selections = o_.selections;
+    sets.ras = ras;
+    std::vector<LabelInfo> known = {{0, ""}};
+    known.insert(known.end(), product.labels.begin(), product.labels.end());
+    for (const auto& [name, text] : o_.parts) {
+      sets.parts.push_back({name, {}});
+      for (const std::size_t k : resolve_labels(known, text)) sets.parts.back().second.push_back(known[k].number);
+    }
+    for (const auto& [text, thickness] : o_.skins)
+      for (const std::size_t k : resolve_labels(known, text)) sets.skins.push_back({known[k].number, thickness});
+    SolverModel model = name_sets(product.mesh, product.labels, sets);
+    product.mesh = TetMesh();
+
+    std::optional<IntensityVolume> image;
+    if (!o_.image.empty()) {
+      image = read_image(o_.image);
+      for (const std::string& w : image->warnings) report.warnings.push_back(w);
+      if (product.space == WorldSpace::none)
+        fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
+    }
+    MaterialOptions how;
+    how.ras = ras;
+    const MaterialReport materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image ? &*image : nullptr, how);
+    for (const std::string& w : materials.warnings) report.warnings.push_back(w);
+    if (!plan_) report.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
+    model.sets.quality = element_quality(model.mesh).scaled_jacobian;
+    if (plan_) apply_load_case(model, plan_->load_case, o_.materials);
+    report.fem = summary(model, materials);
+
+    MeshWriteOptions write = o_.mesh.write;
+    write.space = product.space;
+    for (const std::string& path : o_.mesh.outputs)
+      if (is_volume_format(path)) write_model(files, path, model, write);
+  }
+
+  FemReport summary(const SolverModel& model, const MaterialReport& materials) const {
+    FemReport f;
+    f.order = model.mesh.mid.empty() ? 1 : 2;
+    f.nodes = model.mesh.points.size();
+    f.elements = model.mesh.tets.size();
+    f.image = o_.image;
+    f.materials_path = o_.materials;
+    f.placeholder_materials = model.sets.placeholder_materials;
+    for (const NodeSet& s : model.sets.node_sets) {
+      FemSet row{s.name, s.note, s.nodes.size(), 0};
+      for (const FaceSet& faces : model.sets.surfaces)
+        if (faces.name == s.name) row.faces = faces.faces.size();
+      f.sets.push_back(row);
+    }
+    f.pairs = model.sets.pairs;
+    f.materials = materials.labels;
+    for (const ShellSet& s : model.sets.shells) {
+      f.skins.push_back({s.name, s.thickness_mm});
+      f.shells += s.faces.size();
+    }
+    f.supports = model.sets.supports.size();
+    f.loaded_nodes = model.sets.forces_n.size();
+    for (const auto& [node, force] : model.sets.forces_n) f.force_n = f.force_n + force;
+    return f;
+  }
+
+  const FemRunOptions& o_;
+  Progress& progress_;
+  std::optional<MaterialPlan> plan_;
+};
+
+}  // namespace
+
+RunReport run_fem(const FemRunOptions& options, Progress& progress) { return FemRun(options, progress).run(); }
+
+}  // namespace stackmesh
