@@ -14,7 +14,7 @@ program=(
 )
 tests=(
   libgtest-dev libbenchmark-dev
-  python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-pil python3-vtk9 python3-meshio gmsh
+  python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-pil python3-vtk9 python3-meshio gmsh calculix-ccx
   chromium chromium-driver python3-selenium # opens the HTML report
 )
 pictures=(python3-vtk9 xvfb xauth libgl1-mesa-dri)

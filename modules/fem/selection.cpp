@@ -90,7 +90,7 @@ struct Criterion {
 
 Label label_named(const std::string& name, const SelectionContext& c, const std::string& text) {
   for (const LabelInfo& l : c.labels)
-    if (l.name == name || std::to_string(l.number) == name) return l.number;
+    if (l.name == name || l.name == sanitised_name(name) || std::to_string(l.number) == name) return l.number;
   std::string known;
   for (const LabelInfo& l : c.labels) known += (known.empty() ? "" : ", ") + std::to_string(l.number) + " (" + l.name + ")";
   fail_input("label '" + name + "' is not in the mesh", "--select " + text, "choose among: " + known.substr(0, 300));

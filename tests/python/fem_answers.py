@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Compares CalculiX results with answers known beforehand.
+
+usage: fem_answers.py uniform FRD E NU STRESS AXIS-LENGTH      a bar along z in uniform tension, from z = 0, corner at the origin
+       fem_answers.py series FRD E1 L1 E2 L2 STRESS            two bars end to end along z, no lateral contraction
+       fem_answers.py bar FRD E LENGTH STRESS TOLERANCE        held all round at z = 0: end displacement and stress at half length
+       fem_answers.py reaction FRD LENGTH FORCE TOLERANCE      nodes at z = 0 together bear FORCE along z
+       fem_answers.py compare LINEAR.frd QUADRATIC.frd FORCE   both in balance; the linear one stiffer, but not by half
+       fem_answers.py balance FRD FORCE SMALLEST LARGEST       in balance; largest displacement (mm) within the range
+Exits 1 with what differs, 77 without numpy.
+"""
+import os
+import sys
+
+try:
+    import numpy as np
+except ImportError as error:
+    print(f"SKIPPED: {error}")
+    sys.exit(77)
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "apps"))
+from read_frd import read_frd
+
+
+def need(condition, text):
+    if not condition:
+        print(f"MISMATCH: {text}")
+        sys.exit(1)
+
+
+def close(a, b, tolerance, what):
+    worst = np.abs(np.asarray(a) - np.asarray(b)).max()
+    print(f"{what}: worst difference {worst:.3g}, allowed {tolerance:.3g}")
+    need(worst <= tolerance, f"{what}: {worst}")
+
+
+def balance(result, force):
+    """Supports bear what the loads press: the sum of forces over the held nodes is the negative of the load's."""
+    forces = result.fields["FORC"]
+    close(forces.sum(axis=0), 0, 2e-3 * force, "sum of all nodal forces")
+    low = result.points[:, 2] < np.median(result.points[:, 2])
+    close(abs(forces[low, 2].sum()), force, 2e-3 * force, "force on the lower half")
+
+
+def main():
+    what, first = sys.argv[1], read_frd(sys.argv[2])
+    numbers = [float(v) for v in sys.argv[3:]] if what != "compare" else [float(sys.argv[4])]
+    p, u = first.points, first.fields["DISP"][:, :3]
+    stress = first.fields["STRESS"]
+    if what == "uniform":
+        young, nu, s, length = numbers
+        strain = s / young
+        need(abs(p[:, 2].max() - length) < 1e-9, "length")
+        meant = np.column_stack((-nu * strain * p[:, 0], -nu * strain * p[:, 1], strain * p[:, 2]))
+        close(u, meant, 1e-5 * strain * length, "displacement")
+        close(stress, np.array([0, 0, s, 0, 0, 0]), 1e-4 * s, "stress")
+    elif what == "series":
+        e1, l1, e2, l2, s = numbers
+        z = p[:, 2]
+        meant = np.where(z <= l1, s / e1 * z, s / e1 * l1 + s / e2 * (z - l1))
+        at = np.abs(z - l1) < 1e-9
+        need(at.any(), "no node on the interface")
+        close(u[at, 2], s * l1 / e1, 1e-5 * s * l1 / e1, "displacement of the interface")
+        close(u[:, 2], meant, 1e-5 * meant.max(), "displacement")
+        close(stress[:, 2], s, 1e-4 * s, "stress")
+    elif what == "bar":
+        young, length, s, tolerance = numbers
+        end = p[:, 2] > length - 1e-9
+        meant = s * length / young
+        close(u[end, 2].mean(), meant, tolerance * meant, "displacement of the end")
+        middle = np.abs(p[:, 2] - length / 2) < length / 20
+        close(stress[middle, 2], s, tolerance * s, "stress at half length")
+    elif what == "reaction":
+        length, force, tolerance = numbers
+        held = np.abs(p[:, 2]) < 1e-6
+        close(abs(first.fields["FORC"][held, 2].sum()), force, tolerance * force, "reaction")
+    elif what == "compare":
+        second = read_frd(sys.argv[3])
+        need(first.tets.shape[1] == 4 and second.tets.shape[1] == 10, "orders")
+        for result in (first, second):
+            balance(result, numbers[0])
+        one, two = (np.linalg.norm(r.fields["DISP"][:, :3], axis=1).max() for r in (first, second))
+        print(f"largest displacement: linear {one:.4g}, quadratic {two:.4g} mm")
+        need(0.5 * two < one < two, "the linear mesh is not the stiffer one, or far too stiff")
+    elif what == "balance":
+        force, smallest, largest = numbers
+        balance(first, force)
+        size = np.linalg.norm(u, axis=1).max()
+        print(f"largest displacement {size:.4g} mm")
+        need(smallest < size < largest, f"largest displacement {size}")
+
+
+main()
