@@ -12,6 +12,8 @@ namespace stackmesh {
 namespace {
 
 constexpr double kHalf = 0.5;                        // where an end stands that has no partner, in gaps
+constexpr double kRimRise = 0.45, kPeakRise = 0.95;  // limits of a round end's rim and peak, in gaps
+constexpr double kMostBulge = 2.5;                   // limit of the exponent of equation (1), and of its inverse
 constexpr double kLowest = 0.02, kHighest = 0.98;    // clamp of equation (1)
 
 /// What the rim of a sheet is like at one of its vertices.
@@ -28,6 +30,7 @@ struct Copy {
   std::int32_t next;   // the same vertex in another sheet
   std::int32_t sheet;
   std::uint8_t rim;
+  std::uint8_t rim_edges;  // edges of the sheet's rim that meet here
   double height;       // 0 lower section .. 1 upper section; set by place_copies
   std::int32_t out;    // number of the 3-D vertex
 };
@@ -40,6 +43,8 @@ struct Sheet {
   bool has_inner = false;      // has vertices that are neither on its rim nor flat
   int layer = 0;               // order of sheets that meet over a coincident edge
   double reach = 0;            // largest distance of an inner vertex from the rim
+  double exponent = 1;         // of equation (1)
+  double rim_rise = 0, dome_rise = 0;  // of a round end: height = rim_rise + dome_rise * the dome's profile
   SegmentDistance lower, upper;
   bool single() const { return rims == kRimLower || rims == kRimUpper; }
 };
@@ -215,7 +220,7 @@ class SlabStitcher {
   std::int32_t copy_index(std::int32_t vertex, std::int32_t sheet) {
     for (std::int32_t k = first_copy_[vertex]; k >= 0; k = copies_[k].next)
       if (copies_[k].sheet == sheet) return k;
-    copies_.push_back({first_copy_[vertex], sheet, 0, 0.0, -1});
+    copies_.push_back({first_copy_[vertex], sheet, 0, 0, 0.0, -1});
     return first_copy_[vertex] = static_cast<std::int32_t>(copies_.size() - 1);
   }
 
@@ -233,8 +238,10 @@ class SlabStitcher {
         if (of == kNone) continue;
         std::uint8_t bit = rim_bit(of);
         if (continues(f, i)) bit = of == kLower ? kInnerLower : kInnerUpper;
-        copies_[copy[Cdt::cw(i)]].rim |= bit;
-        copies_[copy[Cdt::ccw(i)]].rim |= bit;
+        for (const int end : {Cdt::cw(i), Cdt::ccw(i)}) {
+          copies_[copy[end]].rim |= bit;
+          if (!(bit & (kInnerLower | kInnerUpper)) && copies_[copy[end]].rim_edges < 255) ++copies_[copy[end]].rim_edges;
+        }
       }
     }
   }
@@ -335,7 +342,83 @@ class SlabStitcher {
           const PlanarPoint& p = plane_.handles[v]->point();
           if (s.single()) s.reach = std::max(s.reach, (s.rims == kRimLower ? s.lower : s.upper)(p.x(), p.y()));
         }
+    keep_volumes();
     for (std::size_t v = 0; v < n; ++v) place_vertex(static_cast<std::int32_t>(v));
+  }
+
+  bool is_round_end(const Sheet& s) const { return s.single() && !s.flat; }
+
+  /// 0 on the rim of a round end, 1 where it is widest: a dome.
+  double dome_profile(const Copy& c, const PlanarPoint& p) {
+    if (!is_inner(c)) return 0;
+    Sheet& s = sheets_[c.sheet];
+    const double d = (s.rims == kRimLower ? s.lower : s.upper)(p.x(), p.y());
+    const double r = s.reach > 0 ? 1 - d / s.reach : 0;
+    return std::sqrt(std::max(0.0, 1 - r * r));
+  }
+
+  /// May this vertex of a round end leave its section? Not on the rim where anything else meets it.
+  bool may_rise(std::int32_t v, const Copy& c) const {
+    return is_inner(c) || (!plane_.vertices[v].is_double() && copies_[first_copy_[v]].next < 0 && c.rim_edges == 2);
+  }
+
+  /// Slices stand for half a gap on either side, so a sheet should divide the gap in halves on average (a round end:
+  /// hold its share). Few points, and rims of unequal length, make it hold less. Round ends: the rim is raised, and
+  /// the peak if that is not enough. Other sheets with points inside: equation (1) gets an exponent.
+  void keep_volumes() {
+    struct Sums {
+      double area = 0, may_rise = 0, height = 0;           // height: without the inner points of a sheet that is no end
+      std::vector<std::pair<double, double>> inner;        // their heights and areas
+    };
+    std::vector<Sums> sums(sheets_.size());
+    std::vector<double> around(copies_.size(), 0);         // area that a copy's height counts for
+    for (const FaceHandle f : cdt().finite_face_handles()) {
+      if (!f->info().in_domain() || sheets_[f->info().sheet].flat || !sheets_[f->info().sheet].has_inner) continue;
+      const double third = cdt().triangle(f).area() / 3;
+      sums[f->info().sheet].area += 3 * third;
+      for (int i = 0; i < 3; ++i) around[copy_index(id(f->vertex(i)), f->info().sheet)] += third;
+    }
+    for (std::size_t v = 0; v < plane_.vertices.size(); ++v)
+      for (std::int32_t k = first_copy_[v]; k >= 0; k = copies_[k].next) {
+        Copy& c = copies_[k];
+        if (around[k] == 0) continue;
+        Sums& sum = sums[c.sheet];
+        if (is_round_end(sheets_[c.sheet])) {
+          c.height = dome_profile(c, plane_.handles[v]->point());
+          sum.height += around[k] * c.height;
+          if (may_rise(static_cast<std::int32_t>(v), c)) sum.may_rise += around[k];
+        } else if (is_inner(c)) {
+          c.height = inner_height(c, plane_.handles[v]->point());
+          sum.inner.emplace_back(c.height, around[k]);
+        } else {
+          sum.height += around[k] * rim_height(c);
+        }
+      }
+    for (std::size_t s = 0; s < sheets_.size(); ++s) {
+      if (!(sums[s].area > 0)) continue;
+      if (!is_round_end(sheets_[s])) {
+        sheets_[s].exponent = exponent_for(0.5 * sums[s].area - sums[s].height, sums[s].inner);
+        continue;
+      }
+      const double holds = in_.round_holds_rel, peak = 1.5 * holds;  // a dome holds two thirds of its height
+      const double profile = sums[s].height / sums[s].area, rising = sums[s].may_rise / sums[s].area;
+      const double rim = rising > profile ? std::clamp((holds - peak * profile) / (rising - profile), 0.0, kRimRise) : 0;
+      const double dome = profile > 0 ? std::min((holds - rim * rising) / profile, kPeakRise - rim) : peak - rim;
+      sheets_[s].rim_rise = rim;
+      sheets_[s].dome_rise = std::max(dome, kLowest);
+    }
+  }
+
+  /// The power to which heights must be raised to add up to `wanted`, within limits.
+  static double exponent_for(double wanted, const std::vector<std::pair<double, double>>& heights) {
+    double low = 1 / kMostBulge, high = kMostBulge;
+    for (int i = 0; i < 30; ++i) {
+      const double middle = std::sqrt(low * high);
+      double sum = 0;
+      for (const auto& [height, area] : heights) sum += area * std::pow(height, middle);
+      (sum > wanted ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
   }
 
   /// The rim segments of every sheet that has inner vertices.
@@ -364,16 +447,22 @@ class SlabStitcher {
 
   double inner_height(const Copy& c, const PlanarPoint& p) {
     Sheet& s = sheets_[c.sheet];
-    if (s.single()) {  // an end: a dome of half a gap over the sheet's own rim
-      const bool upward = s.rims == kRimLower;
-      const double d = (upward ? s.lower : s.upper)(p.x(), p.y());
-      const double r = s.reach > 0 ? 1 - d / s.reach : 0;
-      const double rise = std::max(kLowest, kHalf * std::sqrt(std::max(0.0, 1 - r * r)));
-      return upward ? rise : 1 - rise;
-    }
     if (s.lower.empty() || s.upper.empty()) return kHalf;
     const double low = s.lower(p.x(), p.y()), high = s.upper(p.x(), p.y());
     return low + high > 0 ? std::clamp(low / (low + high), kLowest, kHighest) : kHalf;  // equation (1)
+  }
+
+  /// c.height holds the dome's profile so far.
+  double round_height(std::int32_t v, const Copy& c) const {
+    const Sheet& s = sheets_[c.sheet];
+    const bool upward = s.rims == kRimLower;
+    double rise = may_rise(v, c) ? s.rim_rise + s.dome_rise * c.height : 0;
+    if (is_inner(c)) rise = std::max(rise, kLowest);
+    for (std::int32_t k = first_copy_[v]; k >= 0; k = copies_[k].next) {  // not above a flat end beside it: their seam is a wall
+      const Sheet& other = sheets_[copies_[k].sheet];
+      if (other.flat && other.rims == s.rims && other.end == EndShape::flat) rise = std::min(rise, kHalf);
+    }
+    return upward ? rise : 1 - rise;
   }
 
   double flat_height(const Sheet& s) const {
@@ -387,7 +476,7 @@ class SlabStitcher {
     layers_.clear();
     for (std::int32_t k = first_copy_[v]; k >= 0; k = copies_[k].next) {
       const Copy& c = copies_[k];
-      if (is_inner(c) || sheets_[c.sheet].flat || rim_height(c) != kHalf) continue;
+      if (is_inner(c) || sheets_[c.sheet].flat || sheets_[c.sheet].single() || rim_height(c) != kHalf) continue;
       const int layer = sheets_[c.sheet].layer;
       if (std::find(layers_.begin(), layers_.end(), layer) == layers_.end()) layers_.push_back(layer);
     }
@@ -397,8 +486,10 @@ class SlabStitcher {
       const Sheet& s = sheets_[c.sheet];
       if (s.flat) {
         c.height = flat_height(s);
+      } else if (s.single()) {
+        c.height = round_height(v, c);
       } else if (is_inner(c)) {
-        c.height = inner_height(c, plane_.handles[v]->point());
+        c.height = std::clamp(std::pow(c.height, s.exponent), kLowest, kHighest);
       } else {
         c.height = rim_height(c);
         if (c.height == kHalf) {

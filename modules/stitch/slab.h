@@ -9,7 +9,7 @@ namespace stackmesh {
 
 /// How the end of a label's part is closed where the neighbouring section has nothing to stitch it to.
 enum class EndShape : std::uint8_t {
-  round,     ///< a dome that rises half a gap
+  round,     ///< a dome
   flat,      ///< straight walls, then a plane half a gap beyond the section (the outer voxel face)
   on_plane   ///< a plane on the section itself (plane cuts)
 };
@@ -20,6 +20,7 @@ struct SlabInput {
   const Section* upper = nullptr;
   double z_low_mm = 0, z_high_mm = 0;
   double scale_x = 1, scale_y = 1;  ///< grid units to the metric of the triangulation; few bits, so products are exact
+  double round_holds_rel = 0.5;     ///< what a round end holds: this share of the gap over its area
   /// Shape of an end of a part with that label in the lower (upward end) or upper (downward end) section.
   std::vector<std::pair<Label, EndShape>> upward_ends, downward_ends;  ///< sorted by label; absent: round
 };

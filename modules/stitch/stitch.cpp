@@ -116,6 +116,8 @@ class StackStitcher {
       slab.z_high_mm = k == n ? stack_.sections[n - 1].z_mm + 2 * end_half_gap_mm(stack_, true) : slab.upper->z_mm;
       slab.scale_x = scale_x_;
       slab.scale_y = scale_y_;
+      // A slice stands for half a gap; of a plane cut no more is known than that a dome of half a gap is likely.
+      slab.round_holds_rel = stack_.slices ? 0.5 : 1.0 / 3;
       set_ends(slab, k);
       slabs_[k] = stitch_slab(slab);
       progress_.advance(static_cast<double>(++done) / static_cast<double>(n + 1));
