@@ -118,7 +118,12 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (e.edge_max > 0) o.enhancement.edge_max_mm = e.edge_max;
   o.enhancement.gradation = e.gradation;
   o.enhancement.smooth_passes = e.smooth;
-  if (command.get_option("--target-tets")->count() > 0) o.notes.push_back("--target-tets has no effect yet: the size is what the other options ask for");
+  // The budget is for sizes that nobody asked for, or for whoever asks for it.
+  const bool budget_asked = command.get_option("--target-tets")->count() > 0;
+  const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
+  if (budget_asked || !sizes_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
+  if (budget_asked && (!e.edge_length.empty() || e.off))
+    o.notes.push_back(std::string("--target-tets has no effect beside ") + (e.off ? "--no-enhance" : "--edge-length") + ": the size is what that asks for");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
@@ -133,6 +138,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},
                     {"edge_max_mm", e.edge_max > 0 ? text_of(e.edge_max) : "default"},
                     {"gradation", text_of(e.gradation)},
+                    {"target_tets", budget_asked || !sizes_asked ? std::to_string(e.target_tets) : "unset"},
                     {"space", a.space},
                     {"threads", a.contours.threads > 0 ? std::to_string(a.contours.threads) : "all"},
                     {"strict", a.strict ? "on" : "off"}};

@@ -42,6 +42,10 @@ class Enhancement {
     }
     ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm);
     volumes_ = label_volumes(mesh);
+    for (auto& [label, v] : volumes_) {
+      const auto wanted = o_.label_volume_mm3.find(label);
+      if (wanted != o_.label_volume_mm3.end()) v = wanted->second;
+    }
     shell_sizes(mesh, &shells_);
     result_.complex = stitched_;
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
@@ -235,7 +239,7 @@ class Enhancement {
   const EnhanceOptions& o_;
   Progress& progress_;
   EnhanceResult result_;
-  std::map<Label, double> volumes_;
+  std::map<Label, double> volumes_;  // to be kept
   std::size_t shells_ = 0;
 };
 

@@ -16,6 +16,8 @@ struct EnhanceOptions {
   bool remesh = true;     ///< false: smoothing only
   std::optional<double> edge_length_mm;   ///< uniform edge length; unset: by curvature
   std::map<Label, double> label_edge_mm;  ///< edge length per label; where labels meet the smaller counts
+  std::map<Label, double> label_volume_mm3;  ///< volume that a label should have, as far as small moves give it; else the
+                                             ///< stitched one's (which lies between slices as a frustum, not as voxels)
   std::optional<double>
       deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default half a pixel
   std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels

@@ -188,6 +188,8 @@ class MeshRun {
     known.insert(known.end(), input_.labels.begin(), input_.labels.end());
     for (const auto& [text, edge_mm] : o_.label_edges_text)
       for (std::size_t k : resolve_labels(known, text)) options.label_edge_mm[known[k].number] = edge_mm;
+    for (const LabelReport& row : report_.labels)
+      if (row.input_volume_mm3) options.label_volume_mm3[row.label] = *row.input_volume_mm3;
     InterfaceComplex stitched = std::move(surface_);
     const SurfaceCheck before = *report_.surface;
     clock_.run("enhance", [&] {
