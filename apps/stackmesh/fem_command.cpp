@@ -11,7 +11,7 @@ namespace stackmesh::app {
 namespace {
 
 struct FemArguments {
-  std::string image, materials, names, label_array;
+  std::string image, materials, label_array;
   std::vector<std::string> parts, skins, selections;
   int erode_px = 0;
   double sharp_deg = 50;
@@ -28,10 +28,9 @@ void add_options(CLI::App& command, FemArguments& a) {
   std::string laws;
   for (const std::string& name : known_laws()) laws += (laws.empty() ? "" : ", ") + name;
   command.get_option("INPUT")->description("labels as for mesh, or a volume mesh: .vtu .msh .inp .vtk .mesh");
-  command.add_option("--image", a.image, "CT or MRI intensities for materials: .nii .nii.gz .nrrd .nhdr .mha .mhd .gipl, any grid");
+  command.add_option("--image", a.image, "CT or MRI intensities for materials, any grid: .nii .nii.gz .nrrd .nhdr .mha .mhd .gipl, or a DICOM series (folder or file)");
   command.add_option("--materials", a.materials, "material law and load case, JSON (docs/fem.md); laws built in: " + laws);
   command.add_option("--erode", a.erode_px, "voxels taken off a label's border before its intensities are used (default: the law file's, 0)")->check(CLI::Range(0, 20));
-  command.add_option("--names", a.names, "label names: a Slicer colour table or an ITK-SNAP label description");
   command.add_option("--parts", a.parts, "A=1,3 B=2,4: nodes are shared within a part and doubled between parts")->expected(1, -1);
   command.add_option("--skin", a.skins, "5=0.3: shells of that thickness (mm) on the outer faces of a label; repeatable")->allow_extra_args(false);
   command.add_option("--select", a.selections,
@@ -46,7 +45,6 @@ FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRun
   FemRunOptions o;
   o.mesh = std::move(mesh);
   o.mesh.command = "fem";
-  o.mesh.input.names = a.names;
   o.image = a.image;
   o.materials = a.materials;
   if (command.get_option("--erode")->count() > 0) o.erode_px = a.erode_px;
