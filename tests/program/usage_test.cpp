@@ -15,7 +15,7 @@ class Usage : public ProgramTest {
 };
 
 TEST_F(Usage, NoCommandOrAnUnknownOne) {
-  fails(2, {}, {"no command", "mesh, surface, contours, info"});
+  fails(2, {}, {"no command", "mesh, surface, fem, contours, info, validate"});
   fails(2, {""}, {"unknown command ''"});
   fails(2, {"frobnicate"}, {"unknown command 'frobnicate'", "mesh, surface"});
   fails(2, {"frobnicate", "--help"}, {"unknown command 'frobnicate'"});
@@ -100,7 +100,7 @@ TEST_F(Usage, RasNeedsAnatomy) {
 TEST_F(Usage, MoreThanOneVolumeAndContoursAlongAnotherAxis) {
   fails(2, {"mesh", testdata("border.nii.gz"), testdata("noise.nii.gz"), "-o", out("a.vtu")},
         {"more than one input", "noise"});
-  fails(2, {"mesh", testdata("tube.cnt"), "--axis", "x", "-o", out("a.vtu")}, {"--axis", "along z"});
+  fails(2, {"mesh", testdata("tube.cnt"), "--axis", "x", "-o", out("a.vtu")}, {"--axis", "as they are drawn"});
 }
 
 // ---- help ----
