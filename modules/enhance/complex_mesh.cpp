@@ -310,6 +310,7 @@ std::int32_t ComplexMesh::split(std::int32_t a, std::int32_t b, const Vec3& p) {
   star.emplace_back();
   curve.emplace_back();
   pinned.push_back(0);
+  if (!held.empty()) held.push_back(0);
   for (std::int32_t t : around) {
     MeshTriangle copy = triangles[t];
     cap = cap || is_cap(copy.patch);
@@ -324,6 +325,7 @@ std::int32_t ComplexMesh::split(std::int32_t a, std::int32_t b, const Vec3& p) {
     star[n].push_back(t);
     star[n].push_back(added);
     triangles.push_back(copy);
+    if (!frozen.empty()) frozen.push_back(0);
   }
   flat.push_back(cap);
   if (is_curve_edge(a, b)) {
@@ -338,6 +340,86 @@ void ComplexMesh::add_ridge(std::int32_t a, std::int32_t b) {
   if (is_curve_edge(a, b)) return;
   curve[a].push_back(b);
   curve[b].push_back(a);
+}
+
+bool ComplexMesh::owned(std::int32_t v) const {
+  for (std::int32_t t : star[v])
+    if (!frozen[t]) return true;
+  return star[v].empty();
+}
+
+ComplexMesh ComplexMesh::part(const std::vector<std::int32_t>& numbers, std::size_t free,
+                              std::vector<std::int32_t>& vertices) const {
+  ComplexMesh out;
+  out.pairs_ = pairs_;
+  vertices.clear();
+  for (std::int32_t t : numbers) vertices.insert(vertices.end(), triangles[t].v.begin(), triangles[t].v.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const auto local = [&](std::int32_t v) {
+    const auto it = std::lower_bound(vertices.begin(), vertices.end(), v);
+    return it != vertices.end() && *it == v ? static_cast<std::int32_t>(it - vertices.begin()) : -1;
+  };
+  const std::size_t n = vertices.size();
+  out.star.resize(n);
+  out.curve.resize(n);
+  out.held.assign(n, 0);
+  for (std::int32_t v : vertices) {
+    out.points.push_back(points[v]);
+    out.pinned.push_back(pinned[v]);
+    out.flat.push_back(flat[v]);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::int32_t c : curve[vertices[i]])
+      if (const std::int32_t l = local(c); l >= 0) out.curve[i].push_back(l);
+  out.triangles.reserve(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    MeshTriangle m = triangles[numbers[i]];
+    for (std::int32_t& v : m.v) {
+      v = local(v);
+      out.star[v].push_back(static_cast<std::int32_t>(i));
+      if (i >= free) out.held[v] = 1;
+    }
+    out.triangles.push_back(m);
+    out.frozen.push_back(i >= free);
+  }
+  return out;
+}
+
+void ComplexMesh::compact(std::vector<double>& size, std::vector<std::int32_t>& hints) {
+  std::vector<std::int32_t> number(points.size(), -1);
+  std::size_t kept = 0;
+  for (const MeshTriangle& t : triangles)
+    if (t.patch >= 0) triangles[kept++] = t;
+  triangles.resize(kept);
+  for (const MeshTriangle& t : triangles)
+    for (std::int32_t v : t.v) number[v] = 0;
+  std::int32_t count = 0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (number[v] < 0) continue;
+    points[count] = points[v];
+    pinned[count] = pinned[v];
+    flat[count] = flat[v];
+    size[count] = size[v];
+    hints[count] = hints[v];
+    if (static_cast<std::size_t>(count) != v) curve[count] = std::move(curve[v]);
+    number[v] = count++;
+  }
+  points.resize(count);
+  pinned.resize(count);
+  flat.resize(count);
+  size.resize(count);
+  hints.resize(count);
+  curve.resize(count);
+  star.resize(count);
+  for (auto& list : curve)
+    for (std::int32_t& c : list) c = number[c];
+  for (auto& list : star) list.clear();
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::int32_t& v : triangles[t].v) {
+      v = number[v];
+      star[v].push_back(static_cast<std::int32_t>(t));
+    }
 }
 
 InterfaceComplex ComplexMesh::to_complex() const {

@@ -21,6 +21,7 @@ struct MeshTriangle {
 /// structure; whether one is allowed is asked of `can_collapse`, `can_flip` and the guard.
 class ComplexMesh {
  public:
+  ComplexMesh() = default;
   /// `cap_area_mm2`: connected, exactly horizontal triangles of at least this area together are a flat cap.
   ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2);
 
@@ -30,6 +31,22 @@ class ComplexMesh {
   std::vector<std::vector<std::int32_t>> curve;  ///< neighbours along curve edges
   std::vector<char> pinned;                      ///< never moves, never removed
   std::vector<char> flat;                        ///< on a flat cap: keeps its z
+
+  /// Of a part of a larger complex: triangles that may not change, and the box that vertices may not leave. Empty: none.
+  std::vector<char> frozen, held;  ///< held: vertices of a frozen triangle, which may not move or go
+  Vec3 low{-1e300, -1e300, -1e300}, high{1e300, 1e300, 1e300};
+  bool is_frozen(std::int32_t t) const { return !frozen.empty() && frozen[t]; }
+  bool is_held(std::int32_t v) const { return !held.empty() && held[v]; }
+  bool contains(const Vec3& p) const {
+    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+  }
+  /// True for a vertex of a part that is gone or has a triangle which is not frozen.
+  bool owned(std::int32_t v) const;
+  /// The part with these triangles, those from `free` on frozen; `vertices` are the numbers of its vertices here.
+  ComplexMesh part(const std::vector<std::int32_t>& triangles, std::size_t free, std::vector<std::int32_t>& vertices) const;
+  /// Numbers vertices and triangles anew without those that are gone, and finds the stars; what is held for each vertex
+  /// follows.
+  void compact(std::vector<double>& size, std::vector<std::int32_t>& hints);
 
   bool alive(std::int32_t t) const { return triangles[t].patch >= 0; }
   bool is_fixed(std::int32_t v) const { return pinned[v] || (!curve[v].empty() && curve[v].size() != 2); }

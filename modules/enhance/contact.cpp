@@ -104,10 +104,23 @@ bool apart_meet(const Corners3& s, const Corners3& t) {
   return false;
 }
 
+/// True when a plane through the shared corner, square to the difference of their middle directions, keeps both strictly
+/// on its sides.
+bool fan_apart(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
+  const Vec3 p = b - a, q = c - a, r = d - a, s = e - a;
+  const auto length = [](const Vec3& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); };
+  const double lp = length(p), lq = length(q), lr = length(r), ls = length(s);
+  if (!(lp > 0 && lq > 0 && lr > 0 && ls > 0)) return false;
+  const Vec3 u = (1 / lp) * p + (1 / lq) * q - ((1 / lr) * r + (1 / ls) * s);
+  const double small = 1e-9 * length(u);
+  return dot(u, p) > small * lp && dot(u, q) > small * lq && dot(u, r) < -small * lr && dot(u, s) < -small * ls;
+}
+
 /// What the two have in common is convex and holds the corner: it is more exactly when a far edge meets the
 /// other.
 bool corner_meet(const Corners3& s, int i, const Corners3& t, int j) {
   const Vec3 &sb = s[(i + 1) % 3], &sc = s[(i + 2) % 3], &tb = t[(j + 1) % 3], &tc = t[(j + 2) % 3];
+  if (fan_apart(s[i], sb, sc, tb, tc)) return false;
   const int b = orient(s[0], s[1], s[2], tb), c = orient(s[0], s[1], s[2], tc);
   if (b * c > 0) return false;
   const int d = orient(t[0], t[1], t[2], sb), e = orient(t[0], t[1], t[2], sc);
@@ -155,6 +168,7 @@ SharedCorners shared_corners(const std::array<std::int32_t, 3>& s, const std::ar
 }
 
 bool certainly_apart(const Corners3& s, const Corners3& t, double gap) {
+  if (separates(s[0] + s[1] + s[2] - (t[0] + t[1] + t[2]), s, t, gap)) return true;
   const Vec3 es[3] = {s[1] - s[0], s[2] - s[1], s[0] - s[2]}, et[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
   const Vec3 n = cross(es[0], es[1]), m = cross(et[0], et[1]);
   if (separates(n, s, t, gap) || separates(m, s, t, gap)) return true;

@@ -31,6 +31,12 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   Vec3 p = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   if (mesh_.flat[a] && mesh_.flat[b] && mesh_.points[a].z == mesh_.points[b].z) p.z = mesh_.points[a].z;
   mesh_.edge_triangles(a, b, removed_);
+  const double least = 0.05 * length(a, b);  // a triangle whose third corner is that near to the middle is for a flip
+  for (std::int32_t t : removed_) {
+    if (mesh_.is_frozen(t)) return false;
+    for (std::int32_t w : mesh_.triangles[t].v)
+      if (w != a && w != b && norm(mesh_.points[w] - p) < least) return false;
+  }
   const auto n = static_cast<std::int32_t>(mesh_.points.size());
   added_.clear();
   for (std::int32_t t : removed_) {
@@ -50,6 +56,7 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   const auto first = static_cast<std::int32_t>(mesh_.triangles.size());
   mesh_.split(a, b, p);
   size_.push_back(asked(a, b));
+  hints.push_back(hints[a]);
   touched_ = removed_;
   for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
     touched_.push_back(t);
@@ -59,7 +66,7 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
 }
 
 bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floor_rad) {
-  if (mesh_.pinned[gone] || !mesh_.can_collapse(gone, kept)) return false;
+  if (mesh_.is_held(gone) || mesh_.pinned[gone] || !mesh_.can_collapse(gone, kept)) return false;
   const Vec3 target = mesh_.points[kept], old = mesh_.points[gone];
   const double asked_length = asked(gone, kept), reach = o_.deviation_rel * asked_length;
   if (!mesh_.curve[gone].empty()) {
@@ -123,6 +130,7 @@ int LocalOperations::ideal_valence_error(std::int32_t v, int change) const {
 bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence) {
   std::array<std::int32_t, 2> t, apex;
   if (!mesh_.can_flip(a, b, t, apex)) return false;
+  if (mesh_.is_frozen(t[0]) || mesh_.is_frozen(t[1])) return false;
   const auto [c, d] = apex;
   const std::array<std::int32_t, 3> one = {a, d, c}, two = {d, b, c};
   const double before = std::min(angle(mesh_.triangles[t[0]].v), angle(mesh_.triangles[t[1]].v));
@@ -168,8 +176,11 @@ Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
   } else if (mesh_.flat[v]) {
     to = p;
   } else {
-    const auto foot = reference_.nearest(p, mesh_.triangles[mesh_.star[v][0]].patch, reach);
-    if (foot) to = foot->point;
+    const auto foot = reference_.nearest(p, mesh_.triangles[mesh_.star[v][0]].patch, reach, hints[v]);
+    if (foot) {
+      to = foot->point;
+      hints[v] = foot->face;
+    }
   }
   if (mesh_.flat[v]) to.z = here.z;
   return to;
@@ -190,6 +201,7 @@ double LocalOperations::smallest_round(std::int32_t v, const Vec3& at,
 }
 
 bool LocalOperations::relocate(std::int32_t v) {
+  if (mesh_.is_held(v)) return false;
   fan_normals(v);
   const Vec3 here = mesh_.points[v];
   const double now = smallest_round(v, here, normals_);
@@ -259,7 +271,7 @@ bool LocalOperations::relocate(std::int32_t v) {
   c.clearance_mm = o_.clearance_rel * size_[v];
   for (const auto& [a, q] : places) {
     c.to = q;
-    if (!guard.allows(c)) continue;
+    if (!mesh_.contains(q) || !guard.allows(c)) continue;
     mesh_.points[v] = q;
     guard.update(removed_);
     ++counts.relocations;

@@ -14,9 +14,10 @@ namespace stackmesh {
 /// was.
 class LocalOperations {
  public:
-  LocalOperations(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
-                  const RemeshOptions& options)
-      : guard(mesh, options.sheet_angle_deg), mesh_(mesh), size_(size), reference_(reference), o_(options) {}
+  /// `last_faces`: for each vertex the face of the reference where it last was, or -1.
+  LocalOperations(ComplexMesh& mesh, std::vector<double>& size, std::vector<std::int32_t>& last_faces,
+                  const Reference& reference, const RemeshOptions& options)
+      : guard(mesh, options.sheet_angle_deg), hints(last_faces), mesh_(mesh), size_(size), reference_(reference), o_(options) {}
 
   double asked(std::int32_t a, std::int32_t b) const { return 0.5 * (size_[a] + size_[b]); }
   double length(std::int32_t a, std::int32_t b) const { return norm(mesh_.points[a] - mesh_.points[b]); }
@@ -39,6 +40,7 @@ class LocalOperations {
 
   Guard guard;
   RemeshCounts counts;
+  std::vector<std::int32_t>& hints;
 
  private:
   double smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const;

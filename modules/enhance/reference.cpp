@@ -93,32 +93,45 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm
   });
 }
 
-std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm) const {
+std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm,
+                                                  std::int32_t hint) const {
   double best = std::numeric_limits<double>::infinity();
   double near = reach_mm;
-  const Face* face = nullptr;
+  std::int32_t found = -1;
   Vec3 foot;
+  std::array<std::int32_t, 8> tested;  // a long triangle lies in many cells
+  tested.fill(-1);
+  unsigned turn = 0;
+  const auto test = [&](std::int32_t n) {
+    const Face& f = faces_[n];
+    const Vec3 q = nearest_on_triangle(p, f.p[0], f.p[1], f.p[2]), d = p - q;
+    const double l = dot(d, d);
+    if (l > best || (l == best && n > found)) return;
+    best = l;
+    near = std::min(near, std::sqrt(best));
+    found = n;
+    foot = q;
+  };
+  if (hint >= 0 && faces_[hint].patch == patch) test(hint);
   for (double r = std::min(0.5 * cell_mm_, reach_mm);; r = std::min(2 * r, reach_mm)) {
+    r = std::min(r, near);
     face_cells_.around(p, r, [&](std::int32_t n) {
       const Ball& b = balls_[n];
       if (b.patch != patch) return;
       const double dx = b.x - p.x, dy = b.y - p.y, dz = b.z - p.z, far = near + b.r;
       if (dx * dx + dy * dy + dz * dz > far * far) return;
-      const Face& f = faces_[n];
-      const Vec3 q = nearest_on_triangle(p, f.p[0], f.p[1], f.p[2]), d = p - q;
-      if (dot(d, d) < best) {
-        best = dot(d, d);
-        near = std::sqrt(best);
-        face = &f;
-        foot = q;
-      }
+      for (std::int32_t t : tested)
+        if (t == n) return;
+      tested[turn++ % tested.size()] = n;
+      test(n);
     });
-    if (best <= r * r) break;
+    if (best <= r * r * (1 + 1e-12)) break;
     if (r >= reach_mm) return std::nullopt;
   }
+  const Face* face = &faces_[found];
   const Vec3 n = cross(face->p[1] - face->p[0], face->p[2] - face->p[0]);
   const double size = dot(n, n);
-  if (!(size > 0)) return Foot{foot, {}, face->triangle, near};
+  if (!(size > 0)) return Foot{foot, {}, found, face->triangle, near};
   Vec3 bulged, normal;
   for (int k = 0; k < 3; ++k) {
     const double w = dot(n, cross(face->p[(k + 1) % 3] - foot, face->p[(k + 2) % 3] - foot)) / size;
@@ -126,7 +139,8 @@ std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t pa
     normal = normal + w * face->n[k];
   }
   const double l = norm(normal);
-  return Foot{foot + 0.6 * (bulged - foot), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, face->triangle, near};
+  return Foot{foot + 0.6 * (bulged - foot), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, found, face->triangle,
+              near};
 }
 
 std::optional<Vec3> Reference::nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const {

@@ -18,11 +18,13 @@ class Reference {
 
   struct Foot {
     Vec3 point, normal;
+    std::int32_t face = -1;
     std::int32_t triangle = -1;  ///< of the mesh, as it was numbered at construction
     double distance_mm = 0;      ///< to the plain triangle
   };
-  /// Nearest point on triangles of that patch, not further than `reach_mm`.
-  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm) const;
+  /// Nearest point on triangles of that patch, not further than `reach_mm`. `hint`, the face of a foot nearby or -1, makes
+  /// the search short.
+  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint = -1) const;
   /// Nearest point on curves between the same patches as the curve of `key`.
   std::optional<Vec3> nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const;
 

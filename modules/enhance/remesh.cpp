@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "enhance/blocks.h"
 #include "enhance/local_operations.h"
 #include "enhance/sizing.h"
 #include "enhance/smoothing.h"
@@ -14,27 +15,34 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 const double kSqrt2 = std::sqrt(2.0);
 
+/// Works on a mesh, or on a block of one.
 class Remesher {
  public:
-  Remesher(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
+  Remesher(ComplexMesh& mesh, std::vector<double>& size, std::vector<std::int32_t>& hints, const Reference& reference,
            const RemeshOptions& options)
-      : mesh_(mesh), size_(size), reference_(reference), o_(options), ops_(mesh, size, reference, options) {}
+      : mesh_(mesh), size_(size), reference_(reference), o_(options), ops_(mesh, size, hints, reference, options) {}
 
-  RemeshCounts run(Progress& progress) {
-    for (int round = 0; round < o_.rounds; ++round) {
-      regrid();
-      split_long();
-      collapse_short(round == 0 ? 8 : 3, (round == 0 ? 8 : 15) * kDegree);
-      flip_all(2 * kDegree, round + 1 < o_.rounds, 2);
-      relocate_all(round + 2 < o_.rounds ? 1 : 2);
-      if (o_.deviation_mm > 0 && round + 1 < o_.rounds) shorten_where_off();
-      progress.advance(0.3 + 0.5 * (round + 1) / o_.rounds);
-    }
-    for (int pass = 0; pass < o_.fit_passes; ++pass) fit_reference();
+  void round(int number) {
+    regrid();
+    split_long();
+    collapse_short(number == 0 ? 8 : 3, (number == 0 ? 8 : 15) * kDegree);
+    flip_all(2 * kDegree, number + 1 < o_.rounds, 2);
+    relocate_all(number + 2 < o_.rounds ? 1 : 2);
+  }
+
+  void fit(int passes) {
+    last_.assign(mesh_.triangles.size(), {-1, -1, -1});
+    for (int pass = 0; pass < passes; ++pass) fit_reference();
+  }
+
+  void finish(int sweeps) {
     regrid();
     flip_all(1 * kDegree, false, 3);
-    for (int sweep = 0; sweep < o_.finish_sweeps; ++sweep)
+    for (int sweep = 0; sweep < sweeps; ++sweep)
       if (improve_worst() == 0) break;
+  }
+
+  RemeshCounts counts() const {
     RemeshCounts c = ops_.counts;
     c.refused_contact = ops_.guard.refused_contact;
     c.refused_angle = ops_.guard.refused_angle;
@@ -110,8 +118,11 @@ class Remesher {
     constexpr std::size_t kChunk = 512;
     parallel_for((to.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t v = chunk * kChunk; v < std::min(to.size(), (chunk + 1) * kChunk); ++v)
-        if (!mesh_.star[v].empty() && !mesh_.is_fixed(static_cast<std::int32_t>(v)))
-          to[v] = target(static_cast<std::int32_t>(v));
+        if (!mesh_.star[v].empty() && !mesh_.is_held(static_cast<std::int32_t>(v)) &&
+            !mesh_.is_fixed(static_cast<std::int32_t>(v))) {
+          const Vec3 p = target(static_cast<std::int32_t>(v));
+          if (mesh_.contains(p)) to[v] = p;
+        }
     });
     ops_.counts.relocations += move_guarded(mesh_, to, keep, o_.threads).moved;
   }
@@ -171,11 +182,13 @@ class Remesher {
         const Vec3 a = mesh_.area_vector(m.v);
         const double l = norm(a), reach = size_[m.v[0]];
         if (!(l > 0)) continue;
-        for (const auto& w : kAt) {
+        for (int i = 0; i < 3; ++i) {
+          const auto& w = kAt[i];
           Vec3 p;
           for (int k = 0; k < 3; ++k) p = p + w[k] * mesh_.points[m.v[k]];
-          const auto foot = reference_.nearest(p, m.patch, reach);
+          const auto foot = reference_.nearest(p, m.patch, reach, last_[t][i]);
           if (!foot) continue;
+          last_[t][i] = foot->face;
           const double d = dot(foot->point - p, (1 / l) * a);
           for (int k = 0; k < 3; ++k) off[t][k] += w[k] * d;  // the shares of a corner add up to one
         }
@@ -201,33 +214,6 @@ class Remesher {
       const double l = norm(move), most = 0.2 * size_[v];
       return mesh_.points[v] + (l > most ? most / l : 1.0) * move;
     });
-  }
-
-  /// Sizes shrink where centres of the reference's triangles are further from the mesh than allowed.
-  void shorten_where_off() {
-    double longest = 0;
-    for (std::size_t v = 0; v < size_.size(); ++v)
-      if (!mesh_.star[v].empty()) longest = std::max(longest, size_[v]);
-    const Reference now(mesh_, 0.5 * longest);
-    std::vector<float> factor(mesh_.triangles.size(), 1);
-    std::vector<std::pair<std::int32_t, float>> off(reference_.face_count(), {-1, 1.0f});
-    constexpr std::size_t kChunk = 512;
-    parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
-      for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); ++f) {
-        const auto foot = now.nearest(reference_.centre(f), reference_.patch(f), 2 * longest);
-        if (foot && foot->distance_mm > o_.deviation_mm)
-          off[f] = {foot->triangle, static_cast<float>(std::max(0.5, std::sqrt(o_.deviation_mm / foot->distance_mm)))};
-      }
-    });
-    for (const auto& [t, x] : off)
-      if (t >= 0) factor[t] = std::min(factor[t], x);
-    std::vector<double> shorter = size_;
-    for (std::size_t t = 0; t < factor.size(); ++t)
-      if (factor[t] < 1)
-        for (std::int32_t v : mesh_.triangles[t].v)
-          shorter[v] = std::min(shorter[v], std::max(std::min(size_[v], o_.shortest_mm), 0.9 * factor[t] * size_[v]));
-    size_ = shorter;
-    grade_sizes(mesh_, o_.gradation, size_);
   }
 
   std::size_t improve_worst() {
@@ -274,13 +260,102 @@ class Remesher {
   const Reference& reference_;
   const RemeshOptions& o_;
   LocalOperations ops_;
+  std::vector<std::array<std::int32_t, 3>> last_;  ///< the face of the reference where each sample of a triangle last was
 };
+
+/// Sizes shrink where centres of the reference's triangles are further from the mesh than allowed.
+void shorten_where_off(const ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
+                       const RemeshOptions& o) {
+  double longest = 0, sum = 0;
+  for (double s : size) {
+    longest = std::max(longest, s);
+    sum += s;
+  }
+  const Reference now(mesh, 0.5 * sum / static_cast<double>(size.size()));
+  std::vector<float> factor(mesh.triangles.size(), 1);
+  std::vector<std::pair<std::int32_t, float>> off(reference.face_count(), {-1, 1.0f});
+  constexpr std::size_t kChunk = 512;
+  parallel_for((off.size() + kChunk - 1) / kChunk, o.threads, [&](std::size_t chunk) {
+    std::int32_t hint = -1;
+    for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); ++f) {
+      const auto foot = now.nearest(reference.centre(f), reference.patch(f), longest, hint);
+      if (foot) hint = foot->face;
+      if (foot && foot->distance_mm > o.deviation_mm)
+        off[f] = {foot->triangle, static_cast<float>(std::max(0.5, std::sqrt(o.deviation_mm / foot->distance_mm)))};
+    }
+  });
+  for (const auto& [t, x] : off)
+    if (t >= 0) factor[t] = std::min(factor[t], x);
+  std::vector<double> shorter = size;
+  for (std::size_t t = 0; t < factor.size(); ++t)
+    if (factor[t] < 1)
+      for (std::int32_t v : mesh.triangles[t].v)
+        shorter[v] = std::min(shorter[v], std::max(std::min(size[v], o.shortest_mm), 0.9 * factor[t] * size[v]));
+  size = shorter;
+  grade_sizes(mesh, o.gradation, size);
+}
+
+constexpr std::size_t kWhole = 3000;  // vertices: less is not cut into blocks
+constexpr std::size_t kBlock = 8000;  // vertices of a block, at most
+
+void add(RemeshCounts& sum, const RemeshCounts& c) {
+  sum.splits += c.splits;
+  sum.collapses += c.collapses;
+  sum.flips += c.flips;
+  sum.relocations += c.relocations;
+  sum.refused_contact += c.refused_contact;
+  sum.refused_angle += c.refused_angle;
+  sum.refused_clearance += c.refused_clearance;
+}
 
 }  // namespace
 
 RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
                     const RemeshOptions& options, Progress& progress) {
-  return Remesher(mesh, size, reference, options).run(progress);
+  RemeshCounts counts;
+  std::vector<std::int32_t> hints(mesh.points.size(), -1);
+  mesh.compact(size, hints);
+  // Blocks are worked on at the same time; each phase has their sides elsewhere, so that what was frozen has its turn.
+  int phase = 0;
+  const auto in_blocks = [&](bool whole, auto work) {
+    static constexpr double kCuts[] = {0.5, 0.4, 0.6, 0.45, 0.55};
+    const double cut = kCuts[phase++ % 5];
+    if (whole || mesh.points.size() <= kWhole) {
+      Remesher r(mesh, size, hints, reference, options);
+      work(r);
+      add(counts, r.counts());
+      mesh.compact(size, hints);
+      return;
+    }
+    RemeshOptions one = options;
+    one.threads = 1;
+    const double margin = 1.01 * options.clearance_rel * *std::max_element(size.begin(), size.end());
+    std::vector<MeshBlock> blocks = cut_into_blocks(mesh, size, hints, std::min(kBlock, mesh.points.size() / 4), cut, margin,
+                                                    options.threads);
+    std::vector<RemeshCounts> each(blocks.size());
+    parallel_for(blocks.size(), options.threads, [&](std::size_t i) {
+      MeshBlock& b = blocks[i];
+      Remesher r(b.mesh, b.size, b.hints, reference, one);
+      work(r);
+      each[i] = r.counts();
+    });
+    for (const RemeshCounts& c : each) add(counts, c);
+    join_blocks(mesh, size, hints, blocks);
+  };
+  for (int round = 0; round < options.rounds; ++round) {
+    // The first round works on the stitched needles: sides of blocks among them would leave needles behind.
+    in_blocks(round == 0, [&](Remesher& r) { r.round(round); });
+    if (options.deviation_mm > 0 && round + 1 < options.rounds) shorten_where_off(mesh, size, reference, options);
+    progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
+  }
+  in_blocks(false, [&](Remesher& r) { r.fit(options.fit_passes / 2); });
+  in_blocks(false, [&](Remesher& r) {
+    r.fit(options.fit_passes - options.fit_passes / 2);
+    r.finish(options.finish_sweeps);
+  });
+  in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });
+  progress.advance(0.9);
+  return counts;
 }
 
 }  // namespace stackmesh

@@ -11,7 +11,7 @@ namespace stackmesh {
 struct RemeshOptions {
   int rounds = 4;               ///< of split, collapse, flip, relocate
   int fit_passes = 6;                     ///< of the least-squares fit to the reference
-  int finish_sweeps = 4;        ///< over the worst triangles
+  int finish_sweeps = 6;        ///< over the worst triangles
   double good_angle_deg = 32;   ///< triangles below are worked on at the end
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above ("not below, and not worse")
   double clearance_rel = 0.1;   ///< of the edge length: sheets come no closer

@@ -11,7 +11,7 @@ namespace {
 /// Mean normal of the triangles within `reach` of the edge a b that are connected to `start` and lie on its
 /// side of the edge: over treads and risers of a staircase alike.
 Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::int32_t start,
-                 std::int32_t other, double reach) {
+                 std::int32_t other, double reach, std::vector<std::int32_t>& stamp, std::int32_t now) {
   const Vec3 middle = 0.5 * (mesh.points[a] + mesh.points[b]), along = mesh.points[b] - mesh.points[a];
   const auto centre = [&](std::int32_t t) {
     const auto& v = mesh.triangles[t].v;
@@ -20,14 +20,16 @@ Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::i
   Vec3 across = centre(start) - centre(other);
   across = across - (dot(across, along) / std::max(1e-300, dot(along, along))) * along;
   std::vector<std::int32_t> list(1, start);
+  stamp[start] = now;
   Vec3 sum;
   for (std::size_t i = 0; i < list.size() && list.size() < 200; ++i) {
     sum = sum + mesh.area_vector(mesh.triangles[list[i]].v);
     for (std::int32_t v : mesh.triangles[list[i]].v)
       for (std::int32_t t : mesh.star[v]) {
+        if (stamp[t] == now) continue;
+        stamp[t] = now;
         const Vec3 d = centre(t) - middle;
-        if (mesh.triangles[t].patch == mesh.triangles[start].patch && dot(d, d) < reach * reach &&
-            dot(d, across) > 0 && std::find(list.begin(), list.end(), t) == list.end())
+        if (mesh.triangles[t].patch == mesh.triangles[start].patch && dot(d, d) < reach * reach && dot(d, across) > 0)
           list.push_back(t);
       }
   }
@@ -40,15 +42,16 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm)
   const double limit = std::cos(feature_deg * M_PI / 180),
                wide_limit = std::cos(0.75 * feature_deg * M_PI / 180);
   std::map<std::int32_t, std::vector<std::int32_t>> sharp;
-  std::vector<std::int32_t> around;
+  std::vector<std::int32_t> around, stamp(mesh.triangles.size(), 0);
+  std::int32_t now = 0;
   for (const auto& [a, b] : mesh.edges()) {
     if (mesh.is_curve_edge(a, b)) continue;
     mesh.edge_triangles(a, b, around);
     const Vec3 n = mesh.area_vector(mesh.triangles[around[0]].v),
                m = mesh.area_vector(mesh.triangles[around[1]].v);
     if (dot(n, m) > limit * norm(n) * norm(m)) continue;
-    const Vec3 left = wide_normal(mesh, a, b, around[0], around[1], 0.375 * length_mm);
-    const Vec3 right = wide_normal(mesh, a, b, around[1], around[0], 0.375 * length_mm);
+    const Vec3 left = wide_normal(mesh, a, b, around[0], around[1], 0.375 * length_mm, stamp, ++now);
+    const Vec3 right = wide_normal(mesh, a, b, around[1], around[0], 0.375 * length_mm, stamp, ++now);
     if (dot(left, right) > wide_limit * norm(left) * norm(right)) continue;
     sharp[a].push_back(b);
     sharp[b].push_back(a);
