@@ -237,6 +237,14 @@ class SolidView {
     this.plane.constant = -sign * this.cut.at;
   }
 
+  /** Keeps the side away from the camera, so that the cut is seen. */
+  faceCut() {
+    if (this.cut.axis === 'none') return;
+    this.cut.flip = false;
+    this.placePlane();
+    this.cut.flip = this.plane.normal.dot(this.offset()) > 0;
+  }
+
   updateCut() {
     const on = this.cut.axis !== 'none';
     byId('clip-flip').disabled = byId('clip-whole').disabled = !on;
@@ -375,7 +383,7 @@ class SolidView {
       }
       this.render();
     });
-    byId('clip-axis').addEventListener('change', e => { this.cut.axis = e.target.value; this.updateCut(); this.render(); });
+    byId('clip-axis').addEventListener('change', e => { this.cut.axis = e.target.value; this.faceCut(); this.updateCut(); this.render(); });
     byId('clip-slider').addEventListener('input', e => { this.cut.share = e.target.value / 1000; this.updateCut(); this.render(); });
     byId('clip-flip').addEventListener('click', () => { this.cut.flip = !this.cut.flip; this.updateCut(); this.render(); });
     byId('clip-whole').addEventListener('change', e => { this.cut.whole = e.target.checked; this.updateCut(); this.render(); });
@@ -402,7 +410,7 @@ class SolidView {
 
   stepCut(step) {
     const slider = byId('clip-slider');
-    if (this.cut.axis === 'none' || this.cut.axis === 'section') byId('clip-axis').value = this.cut.axis = 'z';
+    if (this.cut.axis === 'none' || this.cut.axis === 'section') { byId('clip-axis').value = this.cut.axis = 'z'; this.faceCut(); }
     slider.value = Number(slider.value) + step;
     this.cut.share = slider.value / 1000;
     this.updateCut();
@@ -448,7 +456,7 @@ class SolidView {
   /** Looks from a side of the body; the patient's front is -y in LPS and +y in RAS. */
   turn(side) {
     const ras = this.mesh.p.space === 'ras', f = ras ? 1 : -1;
-    const from = {start: [0.45 * -f, f, 0.35], front: [0, f, 0], back: [0, -f, 0], left: [-f, 0, 0], right: [f, 0, 0], top: [0, 0.001 * f, 1], bottom: [0, 0.001 * f, -1]}[side];
+    const from = {start: [0.45 * -f, f, 0.5], front: [0, f, 0], back: [0, -f, 0], left: [-f, 0, 0], right: [f, 0, 0], top: [0, 0.001 * f, 1], bottom: [0, 0.001 * f, -1]}[side];
     const m = this.mesh, direction = new THREE.Vector3(...from).normalize(), distance = this.fitDistance(direction);
     this.controls.target.set(...m.middle);
     this.camera.position.set(...m.middle).addScaledVector(direction, distance);
@@ -482,7 +490,7 @@ class SolidView {
       byId('clip-axis').value = this.cut.axis = axis;
       this.cut.share = Math.max(0, Math.min(1, (p[k] - m.low[k]) / Math.max(1e-9, m.high[k] - m.low[k])));
       byId('clip-slider').value = Math.round(1000 * this.cut.share);
-      this.cut.flip = this.offset().getComponent(k) > 0;
+      this.faceCut();
       this.updateCut();
     }
     const direction = inside || p.every((x, k) => Math.abs(x - m.middle[k]) < 1e-9) ? this.offset() : new THREE.Vector3(...p.map((x, k) => x - m.middle[k])).normalize().add(this.offset().normalize().multiplyScalar(0.8));
