@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the displacement that CalculiX computed.
 
-usage: draw_displacement.py RESULT.frd OUT.png [--mesh MODEL.vtu] [--scale F] [--view front|back|left|right] [--size 900x900]
+usage: draw_displacement.py RESULT.frd OUT.png [--mesh MODEL.vtu] [--scale F] [--view front|back|left|right] [--size 800x600]
 
 The loaded shape, moved by F times its displacement (default: so much that the largest is a twentieth of the model) and coloured by
 the displacement in mm, with the edges of the unloaded shape behind. With the .vtu of the same run, the modulus of its elements, cut
@@ -70,9 +70,11 @@ def legend(table, title):
     bar.SetNumberOfLabels(5)
     bar.SetLabelFormat("%.3g")
     bar.UnconstrainedFontSizeOn()
-    bar.SetPosition(0.83, 0.15)
-    bar.SetWidth(0.13)
+    bar.SetPosition(0.1, 0.15)
+    bar.SetWidth(0.8)
     bar.SetHeight(0.7)
+    bar.SetBarRatio(0.25)
+    bar.SetMaximumWidthInPixels(110)
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         text.SetColor(0.1, 0.1, 0.1)
         text.SetFontSize(18)
@@ -103,20 +105,27 @@ def actor(data, table=None, colour=(0.6, 0.6, 0.6), wire=False, cells=False):
     return made
 
 
-def renderer(actors, toward, slot, slots):
-    made = vtk.vtkRenderer()
-    made.SetViewport(slot / slots, 0, (slot + 1) / slots, 1)
-    made.SetBackground(1, 1, 1)
-    for a in actors:
-        made.AddActor(a) if isinstance(a, vtk.vtkActor) else made.AddActor2D(a)
-    camera = made.GetActiveCamera()
+def renderers(actors, toward, slot, slots):
+    """The model on the left of its panel, the legend on the right."""
+    made = []
+    for low, high, kind in ((0, 0.8, vtk.vtkActor), (0.8, 1, vtk.vtkScalarBarActor)):
+        part = vtk.vtkRenderer()
+        part.SetViewport((slot + low) / slots, 0, (slot + high) / slots, 1)
+        part.SetBackground(1, 1, 1)
+        for a in actors:
+            if isinstance(a, kind):
+                part.AddActor(a) if kind is vtk.vtkActor else part.AddActor2D(a)
+        made.append(part)
+    camera = made[0].GetActiveCamera()
     camera.ParallelProjectionOn()
     camera.SetPosition(*toward)
     camera.SetFocalPoint(0, 0, 0)
     camera.SetViewUp(0, 0, 1)
-    made.ResetCamera()
-    camera.Zoom(1.25)
-    camera.SetWindowCenter(0.12, 0)
+    made[0].ResetCamera()
+    box = made[0].ComputeVisiblePropBounds()
+    across = box[1] - box[0] if toward[0] == 0 else box[3] - box[2]
+    width, height = window_size
+    camera.SetParallelScale(0.53 * max(box[5] - box[4], across * height / (0.8 * width)))
     return made
 
 
@@ -159,7 +168,7 @@ def main():
     parser.add_argument("--mesh")
     parser.add_argument("--scale", type=float)
     parser.add_argument("--view", choices=VIEWS, default="front")
-    parser.add_argument("--size", default="900x900")
+    parser.add_argument("--size", default="800x600")
     args = parser.parse_args()
     result = read_frd(args.result)
     if "DISP" not in result.fields or not len(result.tets):
@@ -175,16 +184,18 @@ def main():
     edges = vtk.vtkExtractEdges()
     edges.SetInputData(still)
     edges.Update()
-    panels = [[actor(moved, table), actor(edges.GetOutput(), colour=(0.35, 0.35, 0.35), wire=True), legend(table, "displacement, mm")]]
+    panels = [[actor(moved, table), actor(edges.GetOutput(), colour=(0.35, 0.35, 0.35), wire=True), legend(table, "moved, mm")]]
     if args.mesh:
         panels.insert(0, modulus_of(args.mesh, toward))
-    width, height = (int(v) for v in args.size.split("x"))
+    global window_size
+    window_size = width, height = tuple(int(v) for v in args.size.split("x"))
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(8)
     window.SetSize(width * len(panels), height)
     for slot, actors in enumerate(panels):
-        window.AddRenderer(renderer(actors, toward, slot, len(panels)))
+        for part in renderers(actors, toward, slot, len(panels)):
+            window.AddRenderer(part)
     window.Render()
     image = vtk.vtkWindowToImageFilter()
     image.SetInput(window)
