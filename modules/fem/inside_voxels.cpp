@@ -83,7 +83,8 @@ void InsideVoxels::erode(int steps) {
           if (state_[at(i, j, k)] == 0) continue;
           for (const auto& d : kFaces) {
             const int x = i + d[0], y = j + d[1], z = k + d[2];
-            if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2] || state_[at(x, y, z)] == 0) next[at(i, j, k)] = 0;
+            if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2]) continue;  // the image's own border: a cut
+            if (state_[at(x, y, z)] == 0) next[at(i, j, k)] = 0;
           }
           any = any || next[at(i, j, k)] != 0;
         }

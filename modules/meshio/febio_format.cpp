@@ -46,6 +46,13 @@ class FebioFile {
     return sets_.materials.front();
   }
 
+  /// A material without a density keeps FEBio's own.
+  bool has_density(std::size_t g) const {
+    for (std::size_t t = mesh_.labels[g].begin; t < mesh_.labels[g].end; ++t)
+      if (sets_.density_t_mm3[t] > 0) return true;
+    return false;
+  }
+
   void constant(const char* name, double value) { out_ << '<' << name << '>' << value << "</" << name << ">\n"; }
 
   void materials() {
@@ -56,9 +63,10 @@ class FebioFile {
       const ElementMaterial& m = material_of(mesh_.labels[g].label);
       out_ << "<material id=\"" << ++id << "\" name=\"M_" << parts_[g] << "\" type=\"isotropic elastic\">\n";
       if (is_mapped(m.label)) {
-        out_ << "<density type=\"map\">density_" << parts_[g] << "</density>\n<E type=\"map\">E_" << parts_[g] << "</E>\n";
+        if (has_density(g)) out_ << "<density type=\"map\">density_" << parts_[g] << "</density>\n";
+        out_ << "<E type=\"map\">E_" << parts_[g] << "</E>\n";
       } else {
-        constant("density", m.density_t_mm3);
+        if (m.density_t_mm3 > 0) constant("density", m.density_t_mm3);
         constant("E", m.young_mpa);
       }
       constant("v", m.poisson);
@@ -66,7 +74,7 @@ class FebioFile {
     }
     for (const ShellSet& s : sets_.shells) {
       out_ << "<material id=\"" << ++id << "\" name=\"M_" << s.name << "\" type=\"isotropic elastic\">\n";
-      constant("density", s.density_t_mm3);
+      if (s.density_t_mm3 > 0) constant("density", s.density_t_mm3);
       constant("E", s.young_mpa);
       constant("v", s.poisson);
       out_ << "</material>\n";
@@ -166,7 +174,7 @@ class FebioFile {
           out_ << "<elem lid=\"" << t - group.begin + 1 << "\">" << values[t] << "</elem>\n";
         out_ << "</ElementData>\n";
       };
-      map("density", sets_.density_t_mm3);
+      if (has_density(g)) map("density", sets_.density_t_mm3);
       map("E", sets_.modulus_mpa);
     }
     if (!sets_.forces_n.empty()) {

@@ -32,6 +32,7 @@ class FemRun {
       if (o_.erode_px) plan_->mapping.erode_px = *o_.erode_px;
       plan_->mapping.threads = o_.mesh.threads;
     }
+    if (!o_.image.empty()) image_ = read_image(o_.image);
     const std::vector<std::string>& inputs = o_.mesh.input.paths;
     return inputs.size() == 1 && is_readable_mesh(inputs[0]) ? from_mesh(inputs[0]) : from_labels();
   }
@@ -58,7 +59,7 @@ class FemRun {
       order.threads = o_.mesh.threads;
       clock.run("volume", [&] { product.mesh = raise_order(std::move(product.mesh), order).mesh; });
     }
-    clock.run("model", [&] { model(std::move(product), report, files); });
+    clock.run("write", [&] { model(std::move(product), report, files); });
     report.peak_rss_mb = peak_memory_mb();
     const std::string json = o_.mesh.reports.empty() ? "" : to_json(report);
     for (const std::string& r : o_.mesh.reports)
@@ -187,16 +188,14 @@ class FemRun {
     SolverModel model = name_sets(product.mesh, product.labels, sets);
     product.mesh = TetMesh();
 
-    std::optional<IntensityVolume> image;
-    if (!o_.image.empty()) {
-      image = read_image(o_.image);
-      for (const std::string& w : image->warnings) report.warnings.push_back(w);
+    if (image_) {
+      for (const std::string& w : image_->warnings) report.warnings.push_back(w);
       if (product.space == WorldSpace::none)
         fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
     }
     MaterialOptions how;
     how.ras = ras;
-    const MaterialReport materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image ? &*image : nullptr, how);
+    const MaterialReport materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr, how);
     for (const std::string& w : materials.warnings) report.warnings.push_back(w);
     if (!plan_) report.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
@@ -238,6 +237,7 @@ class FemRun {
   const FemRunOptions& o_;
   Progress& progress_;
   std::optional<MaterialPlan> plan_;
+  std::optional<IntensityVolume> image_;
 };
 
 }  // namespace

@@ -40,7 +40,7 @@ class MeshRun {
     if (o_.target == Target::volume && is_sound()) clock_.run("volume", [&] { fill(); });
     clock_.run("validate", [&] { judge_rest(); });
     const std::string refusal = verdict();
-    if (refusal.empty() && model_ && mesh_) clock_.run("model", [&] { make_model(); });
+    if (refusal.empty() && model_ && mesh_) clock_.run("write", [&] { make_model(); });
     clock_.run("write", [&] {
       if (refusal.empty()) write();
       if (wants_html()) draw(refusal.empty());
