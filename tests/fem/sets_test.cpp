@@ -191,7 +191,7 @@ TEST(Selections, PickTheFacesTheyDescribe) {
   EXPECT_EQ(selected("s=normal:0,-1,0,20"), 2u * 5 * 4);                     // one side, by its normals
   EXPECT_EQ(selected("s=normal:0,-1,0,20&of:9"), 2u * 2 * 4);
   EXPECT_EQ(selected("s=normal:0,-1,0,20&of:left lung"), 0u + 2 * 3 * 4);
-  EXPECT_EQ(selected("s=sphere:0,0,0,0.6&normal:0,0,-1,10"), 2u);            // the corner's two triangles
+  EXPECT_EQ(selected("s=sphere:0,0,0,0.8&normal:0,0,-1,10"), 2u);            // the corner's two triangles
   EXPECT_EQ(selected("s=in:left_lung_cap_low&box:0,0,-1,1,1,1"), 2u);
 }
 
