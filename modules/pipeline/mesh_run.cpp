@@ -313,6 +313,7 @@ class MeshRun {
     j.surface = &surface_;
     if (mesh_) j.mesh = &*mesh_;
     if (input_.volume) j.volume = &*input_.volume;
+    else if (!stack_.sections.empty()) j.sections = &stack_;
     j.axis = axis_;
     if (!fidelity_.empty()) j.fidelity = &fidelity_;
     j.threads = o_.threads;

@@ -57,7 +57,7 @@ struct Limits {
   double angle_warn_deg = 10, angle_fail_deg = 0.5;         ///< smallest angle of a triangle
   double dihedral_warn_deg = 8, dihedral_fail_deg = 0.5;    ///< smallest dihedral of a tet
   double dihedral_max_warn_deg = 170, dihedral_max_fail_deg = 179.5;
-  double jacobian_warn = 0.08, jacobian_fail = 0.005;       ///< smallest scaled Jacobian of a tet
+  double jacobian_warn = 0.05, jacobian_fail = 0.005;       ///< smallest scaled Jacobian of a tet
   double thin_warn_share = 0.05;  ///< share of a label's surface whose thickness is below `thin_elements`; never fails
   double thin_elements = 2;
   std::size_t small_label_voxels = 200;  ///< below, volume, Dice and distances of a label warn at most
