@@ -58,14 +58,14 @@ class Robustness : public InputTest {
 TEST_F(Robustness, ChangedBytesGiveLabelsOrOneClearLine) {
   written_by("write_rtstruct.py", {"keyhole", "implicit"});
   if (IsSkipped() || HasFatalFailure()) return;
-  mutate(in("keyhole.dcm"), 300, 1);
-  mutate(in("implicit.dcm"), 300, 2);
+  mutate(in("keyhole.dcm"), 150, 1);
+  mutate(in("implicit.dcm"), 150, 2);
   written_by("write_segmentations.py", {"seg_overlap", "seg_rle", "series", "nrrd_layers"});
   if (IsSkipped() || HasFatalFailure()) return;
-  mutate(in("seg_overlap.dcm"), 300, 3);
-  mutate(in("seg_rle.dcm"), 300, 4);
-  mutate(in("nrrd_layers.seg.nrrd"), 300, 5);
-  mutate(in("series") + "/s2.dcm", 300, 6, in("series"));
+  mutate(in("seg_overlap.dcm"), 150, 3);
+  mutate(in("seg_rle.dcm"), 150, 4);
+  mutate(in("nrrd_layers.seg.nrrd"), 150, 5);
+  mutate(in("series") + "/s2.dcm", 100, 6, in("series"));
 }
 
 TEST_F(Robustness, NoIdentifyingFieldReachesAnOutputOrMessage) {

@@ -51,8 +51,9 @@ TEST_F(SlicerModule, RunsAsSlicerCallsItAndTellsItsProgress) {
 }
 
 TEST_F(SlicerModule, GivesTheMeshOfTheSameCommand) {
-  succeeds({"--edge-length=4", "--processinformationaddress=0", heart_, out("a.vtu")});
-  succeeds({"mesh", heart_, "--edge-length", "4", "-o", out("b.vtu"), "--quiet"});
+  const std::string border = program::testdata("border.nii.gz");
+  succeeds({"--edge-length=6", "--processinformationaddress=0", border, out("a.vtu")});
+  succeeds({"mesh", border, "--edge-length", "6", "-o", out("b.vtu"), "--quiet"});
   EXPECT_EQ(program::read_file(out("a.vtu")), program::read_file(out("b.vtu")));
 }
 

@@ -178,7 +178,7 @@ TEST_F(StructureSet, DamageIsToldInOneLine) {
 TEST_F(StructureSet, RealStructuresMeshAndAgreeWithTheirTextContours) {
   const std::string file = program::shared_data("thorax_rtstruct_dicompyler/rtss.dcm");
   if (file.empty()) GTEST_SKIP() << STACKMESH_SHARED_DATA "/thorax_rtstruct_dicompyler/rtss.dcm is not there";
-  for (const auto& [label, name] : std::vector<std::pair<int, std::string>>{{5, "Heart"}, {6, "Lt_Lung"}, {7, "Nodes"}}) {
+  for (const auto& [label, name] : std::vector<std::pair<int, std::string>>{{5, "Heart"}, {7, "Nodes"}}) {
     // Round ends are the same for both; flat ones lie half a gap further out for slices (RTSTRUCT).
     const double dicom = volume(mesh(file, {"--label", name, "--caps", "round"}), label);
     const std::string text = program::shared_data("thorax_rtstruct_dicompyler/contours/" + name + ".cnt");
@@ -187,8 +187,7 @@ TEST_F(StructureSet, RealStructuresMeshAndAgreeWithTheirTextContours) {
   const Json together = mesh(file, {"--label", "Heart,Lt_Lung,BODY"});
   ASSERT_EQ(together.at("labels").size(), 3u);
   for (const Json& l : together.at("labels")) EXPECT_TRUE(l.at("closed"));
-  const Json all = mesh(file);
-  EXPECT_EQ(all.at("labels").size(), 9u);
+  EXPECT_EQ(info(file).at("labels").size(), 9u);
 }
 
 }  // namespace
