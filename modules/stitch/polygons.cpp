@@ -278,7 +278,7 @@ class SectionMaker {
       const auto place = [&](std::size_t f) { return std::find(by_rank_.begin(), by_rank_.end(), f); };
       const bool in_order = place(pair.first) < place(pair.second);
       const std::size_t first = in_order ? pair.first : pair.second, loser = in_order ? pair.second : pair.first;
-      if (volume < 1e-4 * std::min(volume_[first], volume_[loser])) continue;  // rounding, a line shared
+      if (!(volume > 1e-4 * std::min(volume_[first], volume_[loser]))) continue;  // rounding, a line shared
       const std::string how_much = text_of(volume, "%.4g") + " mm3";
       if (volume >= kInside_rel * volume_[loser])
         warnings_.push_back(files_[loser].path + ": " + name_of(loser) + " lies wholly under " + name_of(first) +
