@@ -51,6 +51,7 @@ Json volume(const RunReport& r) {
           {"dihedral_max_deg", of(&VolumeCheck::dihedral_max_deg)},
           {"dihedral_below_10", of(&VolumeCheck::dihedral_below_10)},
           {"in_narrow_wedges", of(&VolumeCheck::in_narrow_wedges)},
+          {"pinched", of(&VolumeCheck::pinched)},
           {"dihedral_histogram", of(&VolumeCheck::dihedral_histogram)},
           {"radius_edge_max", of(&VolumeCheck::radius_edge_max)},
           {"scaled_jacobian_min", of(&VolumeCheck::scaled_jacobian_min)},

@@ -207,6 +207,52 @@ std::size_t count_in_narrow_wedges(const TetMesh& mesh, const std::vector<Shape>
   return count;
 }
 
+/// Tets below 10 degrees that have no inner edge, or a corner on the surface right above a face on the surface.
+std::size_t count_pinched(const TetMesh& mesh, const std::vector<Shape>& shapes) {
+  std::vector<std::size_t> bad;
+  std::vector<char> corner(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < shapes.size(); ++t) {
+    if (!(shapes[t].dihedral_min_deg < 10)) continue;
+    bad.push_back(t);
+    for (const std::int32_t v : mesh.tets[t]) corner[v] = 1;
+  }
+  std::set<std::array<std::int32_t, 2>> edges;
+  std::set<std::array<std::int32_t, 3>> walls;
+  for (const InterfaceTriangle& f : mesh.faces) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = f.v[k], b = f.v[(k + 1) % 3];
+      if (corner[a] && corner[b]) edges.insert({std::min(a, b), std::max(a, b)});
+    }
+    for (const std::int32_t v : f.v)
+      if (corner[v]) corner[v] = 2;  // on the surface
+    std::array<std::int32_t, 3> key = f.v;
+    std::sort(key.begin(), key.end());
+    if (corner[key[0]] && corner[key[1]] && corner[key[2]]) walls.insert(key);
+  }
+  const auto stands_above_a_wall = [&](const std::array<std::int32_t, 4>& v, int apex) {
+    if (corner[v[apex]] != 2) return false;
+    std::array<std::int32_t, 3> face = {v[(apex + 1) & 3], v[(apex + 2) & 3], v[(apex + 3) & 3]};
+    std::sort(face.begin(), face.end());
+    if (walls.count(face) == 0) return false;
+    const Vec3 &a = mesh.points[face[0]], &b = mesh.points[face[1]], &c = mesh.points[face[2]], &p = mesh.points[v[apex]];
+    const Vec3 n = cross(b - a, c - a);
+    return dot(cross(b - a, p - a), n) > 0 && dot(cross(c - b, p - b), n) > 0 && dot(cross(a - c, p - c), n) > 0;
+  };
+  std::size_t count = 0;
+  for (const std::size_t t : bad) {
+    int found = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) {
+        const auto [a, b] = std::minmax(mesh.tets[t][i], mesh.tets[t][j]);
+        found += static_cast<int>(edges.count({a, b}));
+      }
+    bool above = false;
+    for (int apex = 0; apex < 4; ++apex) above = above || stands_above_a_wall(mesh.tets[t], apex);
+    count += found == 6 || above;
+  }
+  return count;
+}
+
 void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& check) {
   std::vector<Shape> shapes(mesh.tets.size());
   std::vector<char> inverted(mesh.tets.size());
@@ -244,6 +290,7 @@ void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& c
     check.scaled_jacobian_min =
         t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
   }
+  check.pinched = count_pinched(mesh, shapes);
   check.in_narrow_wedges = count_in_narrow_wedges(mesh, shapes);
   check.dihedral_p1_deg = percentile(dihedrals, 0.01);
   check.dihedral_min_deg = percentile(dihedrals, 0);

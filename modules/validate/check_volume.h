@@ -27,6 +27,9 @@ struct VolumeCheck {
   std::size_t dihedral_below_10 = 0;  ///< tets whose smallest dihedral is below 10 degrees
   std::size_t in_narrow_wedges = 0;   ///< of those, tets whose smallest dihedral lies between two sheets of the surface
                                       ///< that meet at less than 10 degrees: no filling could do better
+  std::size_t pinched = 0;            ///< of the tets below 10, those between two sheets that come close: all six edges are
+                                      ///< the surface's, or a surface point stands above a surface triangle with
+                                      ///< nothing in between; every filling has flat tets there
   std::array<std::size_t, 36> dihedral_histogram = {};  ///< all six dihedrals of every tet, in steps of 5 degrees
   double radius_edge_max = 0;         ///< circumradius over shortest edge; infinite for a flat tet
   double scaled_jacobian_min = 0;  ///< sqrt 2 * determinant over the largest product of three edges at a node; of second

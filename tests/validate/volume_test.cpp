@@ -82,6 +82,18 @@ TEST(CheckVolume, NarrowWedgesOfTheSurfaceAreListedApart) {
   EXPECT_EQ(c.in_narrow_wedges, 0u);
 }
 
+TEST(CheckVolume, TetsWhereTwoSheetsPinchAreListedApart) {
+  // A lone flat tet has no inner edge. With its point above the triangle taken into a larger body, it still stands above it.
+  EXPECT_EQ(check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0.05})).pinched, 1u);
+  EXPECT_EQ(check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0.9})).pinched, 0u);
+  TetMesh m = one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0.05});
+  m.faces = {{{2, 1, 0}, 4, 0}};  // its other faces are inside, and its point is not on the surface
+  EXPECT_EQ(check_volume(m).pinched, 0u);
+  m.points.insert(m.points.end(), {{5, 5, 5}, {6, 5, 5}});
+  m.faces.push_back({{3, 4, 5}, 4, 0});  // now it is
+  EXPECT_EQ(check_volume(m).pinched, 1u);
+}
+
 TEST(CheckVolume, FirstPercentileIsOfTheSmallestDihedralPerTet) {
   TetMesh m;
   for (int i = 0; i < 200; ++i) {
