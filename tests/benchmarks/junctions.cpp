@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
   const InterfaceComplex smoothed = enhance_complex(stitched, o, quiet).complex;
   o.remesh = true;
   const InterfaceComplex remeshed = enhance_complex(stitched, o, quiet).complex;
-  OpenMesh::omerr().disable();
+  ::omerr().disable();
   const InterfaceComplex* stages[3] = {&stitched, &smoothed, &remeshed};
   Study study[3];
   for (int k = 0; k < 3; ++k) {
