@@ -77,12 +77,11 @@ TEST_F(HtmlReport, SameBytesButForTimesOnOneThreadAndTwo) {
   EXPECT_TRUE(without_times("1") == without_times("2"));
 }
 
-TEST_F(HtmlReport, OfRealDataStaysSmallAndOpens) {
-  const std::string torso = shared_data("torso_totalseg/torso_3mm_61labels.nii.gz");
-  if (torso.empty()) GTEST_SKIP() << "no ../shared/data/torso_totalseg";
-  succeeds({"surface", torso, "--no-enhance", "-o", out("a.vtp"), "--report", out("R.html")});
+TEST_F(HtmlReport, OfRealDataStaysSmall) {
+  const std::string skull = shared_data("skull_ct_invesalius/bone_mask.nii.gz");
+  if (skull.empty()) GTEST_SKIP() << "no ../shared/data/skull_ct_invesalius";
+  succeeds({"surface", skull, "--no-enhance", "--interpolate", "0", "-o", out("a.vtp"), "--report", out("R.html")});
   EXPECT_LT(read_file(out("R.html")).size(), kMostBytes);
-  opens(out("R.html"), {"--label", "5"});
 }
 
 }  // namespace
