@@ -224,7 +224,7 @@ std::string defects_html(const std::vector<HtmlSubject>& subjects) {
       std::string kind = defect.kind;
       std::replace(kind.begin(), kind.end(), '_', ' ');
       rows += "<tr>" + (subjects.size() > 1 ? text_cell(subjects[m].name) : "") + "<td data-v=\"" + std::to_string(d + 1) + "\">D" + std::to_string(d + 1) + "</td>" + text_cell(kind) +
-              text_cell(defect.text) + cell(defect.label, 9) + "<td>" + place + "</td>" +
+              text_cell(defect.text) + cell(defect.label, 9) + "<td style=\"white-space:nowrap\">" + place + "</td>" +
               (defect.section ? cell(*defect.section + 1, 9) : "<td data-v=\"\"></td>") + cell(static_cast<double>(defect.count), 9) + cell(defect.size_mm) +
               "<td class=\"jump\"><button type=\"button\" data-mesh=\"" + std::to_string(m) + "\" data-size=\"" + exact(defect.size_mm) + "\" data-at=\"" + data +
               "\" aria-label=\"Show defect " + std::to_string(d + 1) + " in the pictures\">Show</button></td></tr>\n";
