@@ -102,7 +102,7 @@ std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStri
 /// Points spread by area: one in each of equal shares of it, placed in their triangle by a low-discrepancy
 /// sequence.
 std::vector<Vec3> sample_surface(const std::vector<Corners>& triangles, std::size_t most) {
-  const std::size_t count = std::min(most, std::max<std::size_t>(2000, 2 * triangles.size()));
+  const std::size_t count = std::min(most, std::max<std::size_t>(20000, 4 * triangles.size()));
   double total = 0;
   for (const Corners& t : triangles) total += norm(cross(t.b - t.a, t.c - t.a));
   std::vector<Vec3> points;

@@ -53,7 +53,7 @@ struct FidelityOptions {
   int threads = 0;                   ///< 0: all of the machine; the result does not depend on it
   int stack_axis = 2;                ///< axis of the volume along which the sections are stacked: 0, 1 or 2
   std::size_t face_samples = 60000;  ///< about the most voxel faces a label is measured from
-  std::size_t surface_samples = 60000;  ///< most points on a label's surface; two a triangle, at least 2,000
+  std::size_t surface_samples = 60000;  ///< most points on a label's surface; four a triangle, at least 20,000
   std::uint64_t seed = 1;               ///< of the choice among too many voxel faces
 };
 

@@ -160,7 +160,7 @@ def main():
     boundary = poly_data((quads * spacing).reshape(-1, 3), np.arange(4 * len(quads)).reshape(-1, 4))
     rng = np.random.default_rng(7)
     area = np.linalg.norm(np.cross(mm[triangles[:, 1]] - mm[triangles[:, 0]], mm[triangles[:, 2]] - mm[triangles[:, 0]]), axis=1)
-    pick = rng.choice(len(triangles), 60000, p=area / area.sum())
+    pick = rng.choice(len(triangles), 250000, p=area / area.sum())
     uv = rng.random((len(pick), 2))
     uv[uv.sum(1) > 1] = 1 - uv[uv.sum(1) > 1]
     t = mm[triangles[pick]]
