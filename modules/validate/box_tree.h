@@ -96,6 +96,7 @@ template <class Visit>
 void BoxTree::along_ray(const Vec3& from, const Vec3& along, double reach, Visit visit) const {
   const double o[3] = {from.x, from.y, from.z}, d[3] = {along.x, along.y, along.z};
   const auto enters = [&](const Box& b) {  // where the ray comes in; NaN: not within reach
+    if (b.low[0] > b.high[0]) return std::numeric_limits<double>::quiet_NaN();  // empty: a leaf without items
     double low = 0, high = reach;
     for (int k = 0; k < 3; ++k) {
       if (d[k] == 0) {
