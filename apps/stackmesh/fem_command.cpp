@@ -12,6 +12,7 @@ namespace {
 
 struct FemArguments {
   std::string image, materials, label_array;
+  std::string contact = "tie";
   std::vector<std::string> parts, skins, selections;
   int erode_px = 0;
   double sharp_deg = 50;
@@ -32,6 +33,9 @@ void add_options(CLI::App& command, FemArguments& a) {
   command.add_option("--materials", a.materials, "material law and load case, JSON (docs/fem.md); laws built in: " + laws);
   command.add_option("--erode", a.erode_px, "voxels taken off a label's border before its intensities are used (default: the law file's, 0)")->check(CLI::Range(0, 20));
   command.add_option("--parts", a.parts, "A=1,3 B=2,4: nodes are shared within a part and doubled between parts")->expected(1, -1);
+  command.add_option("--contact", a.contact, "between parts, where the law file says nothing: tie (they stay joined), contact (they press and slide), none")
+      ->check(CLI::IsMember({"tie", "contact", "none"}))
+      ->capture_default_str();
   command.add_option("--skin", a.skins, "5=0.3: shells of that thickness (mm) on the outer faces of a label; repeatable")->allow_extra_args(false);
   command.add_option("--select", a.selections,
                      "NAME=CRITERION[&CRITERION]: box:x0,y0,z0,x1,y1,z1 sphere:x,y,z,r plane:x,y,z,nx,ny,nz[,tolerance] "
@@ -49,6 +53,9 @@ FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRun
   o.materials = a.materials;
   if (command.get_option("--erode")->count() > 0) o.erode_px = a.erode_px;
   for (const std::string& text : a.parts) o.parts.push_back(at_equals(text, "--parts", "NAME=LABELS"));
+  o.contact = a.contact == "tie" ? Contact::tie : a.contact == "contact" ? Contact::contact : Contact::none;
+  if (a.parts.empty() && command.get_option("--contact")->count() > 0)
+    fail_usage("--contact is between parts, and there are none", "command line", "give them with --parts A=1,3 B=2,4");
   for (const std::string& text : a.skins) {
     const auto [label, thickness] = at_equals(text, "--skin", "LABEL=MM");
     o.skins.push_back({label, parse_number(thickness, "--skin")});
@@ -66,10 +73,20 @@ FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRun
   return o;
 }
 
+std::string contact_text(const SurfacePair& p) {
+  if (p.contact == Contact::tie) return "tied";
+  if (p.contact == Contact::none) return "surfaces named, no contact";
+  char text[96];
+  std::snprintf(text, sizeof text, "contact, %.5g MPa/mm, friction %.3g", p.stiffness_mpa_mm, p.friction);
+  return text;
+}
+
 void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
   const FemReport& f = *r.fem;
   std::printf("mesh      %zu nodes, %zu tetrahedra of %d nodes, %zu shells\n", f.nodes, f.elements, f.order == 2 ? 10 : 4, f.shells);
   for (const FemSet& s : f.sets) std::printf("set       %-32s %7zu nodes %7zu faces  %s\n", s.name.c_str(), s.nodes, s.faces, s.note.c_str());
+  for (const SurfacePair& p : f.pairs)
+    std::printf("pair      %-32s %s\n", (p.parts[0] + ", " + p.parts[1]).c_str(), contact_text(p).c_str());
   for (const MaterialRow& m : f.materials) {
     std::printf("material  %-32s ", m.name.c_str());
     if (f.placeholder_materials) std::printf("none given\n");

@@ -4,28 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
+
+#include "base/disjoint_sets.h"
 
 namespace stackmesh {
 namespace {
-
-class Sets {  // union-find
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t a) {
-    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
-    return a;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 struct Border {
   std::int32_t a = 0, b = 0;  // places in the list of faces
@@ -71,7 +55,7 @@ std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, co
   const std::vector<Border> edges = borders(all, faces, wall, options.sharp_deg);
   const auto sharp = std::count_if(edges.begin(), edges.end(), [](const Border& b) { return b.sharp; });
   const bool staircase = static_cast<std::size_t>(sharp) * 4 > edges.size();
-  Sets components(faces.size()), patches(faces.size());
+  DisjointSets components(faces.size()), patches(faces.size());
   for (const Border& b : edges) {
     components.join(b.a, b.b);
     if (!b.wall && (staircase || !b.sharp)) patches.join(b.a, b.b);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace stackmesh {
 namespace {
@@ -27,12 +28,6 @@ std::optional<std::array<std::uint8_t, 3>> colour_of(const std::vector<std::stri
     c[k] = *part;
   }
   return c;
-}
-
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
 }
 
 }  // namespace
@@ -100,7 +95,7 @@ std::vector<LabelInfo> solver_names(std::vector<LabelInfo> labels) {
     const std::string name =
         (label.name.empty() ? "label_" + std::to_string(label.number) : sanitised_name(label.name)).substr(0, longest);
     label.name = name;
-    for (int n = 2; !taken.insert(lower(label.name)).second; ++n) {
+    for (int n = 2; !taken.insert(lower_case(label.name)).second; ++n) {
       const std::string tail = "_" + std::to_string(n);
       label.name = name.substr(0, longest - tail.size()) + tail;
     }

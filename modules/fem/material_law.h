@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/label_volume.h"
+#include "model/solver_model.h"
 
 namespace stackmesh {
 
@@ -71,6 +72,14 @@ struct LoadCase {
   std::vector<Loaded> loaded;
 };
 
+/// What two parts of --parts do to each other.
+struct ContactLaw {
+  std::array<std::string, 2> parts;
+  Contact contact = Contact::tie;
+  double friction = 0;
+  std::optional<double> stiffness_mpa_mm;  ///< unset: see join_parts()
+};
+
 /// A law file, read and checked.
 struct MaterialPlan {
   std::string path;
@@ -79,6 +88,7 @@ struct MaterialPlan {
   std::map<std::string, SkinMaterial> skins;
   MappingOptions mapping;
   LoadCase load_case;
+  std::vector<ContactLaw> contacts;
 };
 
 /// The names of the laws that need no steps in a file.

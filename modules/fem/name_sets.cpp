@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "fem/boundary_patches.h"
 #include "fem/label_table.h"
 #include "fem/ordered_mesh.h"
@@ -34,7 +35,7 @@ class Namer {
     }
     model_.labels = solver_names(std::move(infos));
     faces_ = boundary_faces(model_.mesh);
-    for (const LabelInfo& l : model_.labels) taken_.insert(lower(l.name));
+    for (const LabelInfo& l : model_.labels) taken_.insert(lower_case(l.name));
   }
 
   SolverModel run() {
@@ -51,14 +52,9 @@ class Namer {
   }
 
  private:
-  static std::string lower(std::string text) {
-    for (char& c : text)
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-  }
   std::string unique(const std::string& name) {
     std::string result = name;
-    for (int n = 2; !taken_.insert(lower(result)).second; ++n) result = name + "_" + std::to_string(n);
+    for (int n = 2; !taken_.insert(lower_case(result)).second; ++n) result = name + "_" + std::to_string(n);
     return result;
   }
   const std::string& name_of(Label label) const {
@@ -85,7 +81,7 @@ class Namer {
     std::map<Label, int> part_of_label;
     std::set<std::string> names;
     for (const auto& [name, labels] : o_.parts) {
-      if (sanitised_name(name) != name || !names.insert(lower(name)).second)
+      if (sanitised_name(name) != name || !names.insert(lower_case(name)).second)
         fail_usage("'" + name + "' is no name for a part, or is there twice", "--parts", "use letters, digits and _, each name once: A=1,3 B=2,4");
       for (const Label l : labels)
         if (!part_of_label.insert({l, static_cast<int>(part_names_.size())}).second)
@@ -189,7 +185,12 @@ class Namer {
     for (const auto& [ab, contact] : contacts_) {
       if (ab.first > ab.second) continue;
       const auto other = contacts_.find({ab.second, ab.first});
-      model_.sets.pairs.push_back({unique("pair_" + part_names_[ab.first] + "_" + part_names_[ab.second]), contact.first, other->second.first});
+      SurfacePair pair;
+      pair.name = unique("pair_" + part_names_[ab.first] + "_" + part_names_[ab.second]);
+      pair.primary = contact.first;
+      pair.secondary = other->second.first;
+      pair.parts = {part_names_[ab.first], part_names_[ab.second]};
+      model_.sets.pairs.push_back(std::move(pair));
     }
   }
   void name_of_given(Label label) const {
@@ -211,7 +212,7 @@ class Namer {
     const SelectionContext context = {model_.mesh, faces_, model_.labels, find, place, o_.ras};
     for (const std::string& text : o_.selections) {
       const auto [name, list] = select_faces(text, context);
-      if (taken_.count(lower(name)) > 0)
+      if (taken_.count(lower_case(name)) > 0)
         fail_usage("a set named '" + name + "' is there already", "--select " + text, "choose another name");
       add(name, "selected: " + text.substr(text.find('=') + 1), list);
     }
@@ -234,7 +235,7 @@ class Namer {
   /// Nodes are copied for the parts, then sets are written down with the nodes they have by then.
   void finish() {
     TetMesh& mesh = model_.mesh;
-    std::vector<std::int32_t> original;
+    std::vector<std::int32_t>& original = model_.sets.original;
     if (!part_names_.empty()) {
       std::vector<int> part_of_tet;
       part_of_tet.reserve(mesh.tets.size());

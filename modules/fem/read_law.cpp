@@ -45,7 +45,7 @@ class LawReader {
     } catch (const Json::parse_error& e) {
       fail_input("the material law is no JSON (byte " + std::to_string(e.byte) + ")", plan_.path, "mend the file; docs/fem.md has the schema");
     }
-    only(j, "the file", {"schema", "comment", "units", "calibration", "laws", "labels", "skins", "mapping", "load_case"});
+    only(j, "the file", {"schema", "comment", "units", "calibration", "laws", "labels", "skins", "mapping", "load_case", "contact"});
     if (!j.contains("schema") || j.at("schema") != "stackmesh-law-1") bad("\"schema\" is not \"stackmesh-law-1\"", "the file");
     units(j);
     if (j.contains("calibration")) calibration(j.at("calibration"));
@@ -57,6 +57,7 @@ class LawReader {
       for (const auto& [name, skin] : object(j.at("skins"), "skins")) skin_material(name, skin);
     if (j.contains("mapping")) mapping(j.at("mapping"));
     if (j.contains("load_case")) load_case(j.at("load_case"));
+    for (const Json& c : list(j, "contact", "the file")) contact(c);
     return std::move(plan_);
   }
 
@@ -307,6 +308,28 @@ class LawReader {
       }
       plan_.load_case.loaded.push_back(loaded);
     }
+  }
+
+  void contact(const Json& j) {
+    const std::string where = "contact";
+    only(j, where, {"comment", "source", "parts", "type", "friction", "stiffness_MPa_mm"});
+    ContactLaw law;
+    if (!j.contains("parts") || !j.at("parts").is_array() || j.at("parts").size() != 2 || !j.at("parts")[0].is_string() ||
+        !j.at("parts")[1].is_string())
+      bad("\"parts\" is no list of two names of parts", where);
+    for (int k = 0; k < 2; ++k) law.parts[k] = j.at("parts")[k].get<std::string>();
+    const std::string type = text(j, "type", where);
+    if (type != "tie" && type != "contact" && type != "none") bad("\"type\" is none of \"tie\", \"contact\", \"none\"", where);
+    law.contact = type == "tie" ? Contact::tie : type == "contact" ? Contact::contact : Contact::none;
+    if (law.contact != Contact::contact && (j.contains("friction") || j.contains("stiffness_MPa_mm")))
+      bad("\"friction\" and \"stiffness_MPa_mm\" are for type \"contact\"", where);
+    law.friction = number(j, "friction", where, 0);
+    if (!(law.friction >= 0)) bad("\"friction\" is negative", where);
+    if (j.contains("stiffness_MPa_mm")) {
+      law.stiffness_mpa_mm = number(j, "stiffness_MPa_mm", where);
+      if (!(*law.stiffness_mpa_mm > 0)) bad("\"stiffness_MPa_mm\" is not above 0", where);
+    }
+    plan_.contacts.push_back(std::move(law));
   }
 
   MaterialPlan plan_;

@@ -1,7 +1,8 @@
 #include "image/file_names.h"
 
 #include <algorithm>
-#include <cctype>
+
+#include "base/text.h"
 
 namespace stackmesh {
 namespace {
@@ -19,16 +20,7 @@ const struct {
     {".gipl.gz", FileFormat::gipl}, {".gipl", FileFormat::gipl},     {".png", FileFormat::png},
     {".tiff", FileFormat::tiff},    {".tif", FileFormat::tiff}};
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 std::string file_name_of(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
@@ -37,14 +29,14 @@ std::string file_name_of(const std::string& path) {
 FileFormat format_of(const std::string& path) {
   const std::string name = lower_case(file_name_of(path));
   for (const auto& e : endings)
-    if (ends_with(name, e.ending)) return e.format;
+    if (name != e.ending && ends_with(name, e.ending)) return e.format;
   return FileFormat::unknown;
 }
 
 std::string stem_of(const std::string& path) {
   const std::string name = file_name_of(path), lower = lower_case(name);
   for (const auto& e : endings)
-    if (ends_with(lower, e.ending)) return name.substr(0, name.size() - std::string(e.ending).size());
+    if (lower != e.ending && ends_with(lower, e.ending)) return name.substr(0, name.size() - std::string(e.ending).size());
   return name.substr(0, name.find_last_of('.'));
 }
 

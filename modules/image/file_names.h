@@ -11,7 +11,6 @@ FileFormat format_of(const std::string& path);
 /// The name without folder and (double) ending: "a/heart.nii.gz" gives "heart".
 std::string stem_of(const std::string& path);
 std::string file_name_of(const std::string& path);
-std::string lower_case(std::string text);
 
 /// True when a sorts before b with digit runs compared as numbers: "slice2" before "slice10".
 bool natural_less(const std::string& a, const std::string& b);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/file_names.h"
 
 namespace stackmesh {

@@ -17,6 +17,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "image/deflate_check.h"
 #include "image/palette.h"
 #include "image/segments.h"

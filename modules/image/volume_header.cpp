@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/text_header.h"
 
 namespace stackmesh {

@@ -4,29 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/disjoint_sets.h"
+
 namespace stackmesh::interpolate {
 namespace {
-
-class UnionFind {
- public:
-  std::int32_t add() {
-    parent_.push_back(static_cast<std::int32_t>(parent_.size()));
-    return parent_.back();
-  }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-  std::size_t size() const { return parent_.size(); }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 /// The island of that label just beside a piece of its contour; -1 if the raster has none there.
 std::int32_t island_beside(const BorderPiece& piece, bool left, const Pixels& slice, const Islands& islands) {
@@ -93,7 +74,7 @@ Islands find_islands(const Pixels& slice) {
   Islands islands;
   const int width = slice.width;
   islands.of.assign(slice.label.size(), 0);
-  UnionFind sets;
+  DisjointSets sets;
   sets.add();  // background
   for (int y = 0; y < slice.height; ++y) {
     const std::uint16_t* row = slice.label.data() + static_cast<std::size_t>(y) * width;
@@ -139,7 +120,7 @@ Islands find_islands(const Pixels& slice) {
 }
 
 Groups group_islands(const Islands& low, const Islands& high, const Islands* before, const Islands* after) {
-  UnionFind sets;
+  DisjointSets sets;
   for (int i = 0; i < low.count() + high.count(); ++i) sets.add();
   const std::int32_t shift = low.count();  // island h of `high` is h + shift
   std::int32_t last_low = 0, last_high = 0;

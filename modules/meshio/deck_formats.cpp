@@ -59,10 +59,33 @@ void write_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::vec
   }
 }
 
-/// One static step with the supports and forces.
+/// What parts do to each other. The first surface of a line is the one whose nodes follow (Abaqus's and CalculiX's slave).
+void write_contact(OutputBuffer& out, const SolverSets& sets) {
+  for (const Tie& t : sets.ties)  // nodes, not faces: none of them is held twice where three parts meet
+    out << "*SURFACE, NAME=" << t.name << ", TYPE=NODE\n" << t.name << "\n*TIE, NAME=" << t.name << ", ADJUST=NO\n" << t.name << ", " << t.faces << '\n';
+  for (const SurfacePair& p : sets.pairs) {
+    if (p.contact == Contact::none) out << "** surfaces that face each other: " << p.primary << " and " << p.secondary << '\n';
+    if (p.contact != Contact::contact) continue;
+    out << "** contact: pressure per mm of penetration, MPa/mm\n*SURFACE INTERACTION, NAME=" << p.name
+        << "\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n";
+    out.print20(p.stiffness_mpa_mm);
+    out << '\n';
+    if (p.friction > 0) {  // the second number is CalculiX's stick slope, MPa/mm; Abaqus reads it as a slip rate, on which nothing depends
+      out << "*FRICTION\n";
+      out.print20(p.friction);
+      out << ", ";
+      out.print20(0.1 * p.stiffness_mpa_mm);
+      out << '\n';
+    }
+    out << "*CONTACT PAIR, INTERACTION=" << p.name << ", TYPE=SURFACE TO SURFACE\n" << p.primary << ", " << p.secondary << '\n';
+  }
+}
+
+/// One static step with the supports and forces; where there is contact in up to ten increments.
 void write_step(OutputBuffer& out, const SolverSets& sets) {
   if (!sets.has_load_case()) return;
   out << "*STEP\n*STATIC\n";
+  if (sets.has_contact()) out << "0.1, 1.\n";
   for (const Support& s : sets.supports)
     for (int axis = 0; axis < 3; ++axis) {
       if (!s.value_mm[axis]) continue;
@@ -139,9 +162,8 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
       for (const TetFace f : sets.surfaces[i].faces) out << f.tet + 1 << ", S" << f.face + 1 << '\n';
     }
   }
-  for (const SurfacePair& pair : mesh.sets.pairs)
-    out << "** surfaces that face each other: " << pair.primary << " and " << pair.secondary << '\n';
   write_materials(out, mesh, label_sets, element_sets);
+  write_contact(out, mesh.sets);
   write_step(out, mesh.sets);
 }
 

@@ -22,13 +22,18 @@ class FebioFile {
     out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n<!-- stackmesh; units: mm, N, MPa, t/mm3";
     if (!mesh_.space.empty()) out_ << "; " << mesh_.space_mark();
     out_ << " -->\n<Module type=\"solid\">\n<units>mm-N-s</units>\n</Module>\n"
-            "<Control>\n<analysis>STATIC</analysis>\n<time_steps>1</time_steps>\n<step_size>1</step_size>\n"
-            "<solver type=\"solid\">\n<symmetric_stiffness>symmetric</symmetric_stiffness>\n</solver>\n</Control>\n";
+            "<Control>\n<analysis>STATIC</analysis>\n";
+    out_ << (sets_.has_contact() ? "<time_steps>10</time_steps>\n<step_size>0.1</step_size>\n" : "<time_steps>1</time_steps>\n<step_size>1</step_size>\n");
+    out_ << "<solver type=\"solid\">\n<symmetric_stiffness>" << (has_friction() ? "non-symmetric" : "symmetric")
+         << "</symmetric_stiffness>\n</solver>\n</Control>\n";
     materials();
     mesh();
     domains();
     data();
-    load_case();
+    boundary();
+    loads();
+    contact();
+    load_curve();
     out_ << "<Output>\n<plotfile type=\"febio\">\n<var type=\"displacement\"/>\n<var type=\"stress\"/>\n</plotfile>\n</Output>\n"
             "</febio_spec>\n";
   }
@@ -188,14 +193,48 @@ class FebioFile {
     out_ << "</MeshData>\n";
   }
 
-  void load_case() {
+  void boundary() {
     if (!sets_.has_load_case()) return;
     out_ << "<Boundary>\n";
     for (const Support& s : sets_.supports) support(s);
     out_ << "</Boundary>\n";
+  }
+  void loads() {
     if (!sets_.forces_n.empty())
       out_ << "<Loads>\n<nodal_load name=\"load\" node_set=\"loaded_nodes\" type=\"nodal_force\">\n"
               "<value lc=\"1\" type=\"map\">nodal_forces</value>\n</nodal_load>\n</Loads>\n";
+  }
+
+  bool has_friction() const {
+    for (const SurfacePair& p : sets_.pairs)
+      if (p.contact == Contact::contact && p.friction > 0) return true;
+    return false;
+  }
+
+  /// Ties are held by augmentation, contact by a penalty: the pressure per mm of penetration.
+  void contact() {
+    bool any = false;
+    for (const SurfacePair& p : sets_.pairs) {
+      if (p.contact == Contact::none) continue;
+      if (!any) out_ << "<Contact>\n";
+      any = true;
+      const bool tied = p.contact == Contact::tie;
+      out_ << "<contact name=\"" << p.name << "_contact\" surface_pair=\"" << p.name << "\" type=\"" << (tied ? "tied-elastic" : "sliding-elastic") << "\">\n";
+      if (tied) {
+        out_ << "<laugon>AUGLAG</laugon>\n<tolerance>0.01</tolerance>\n<penalty>10</penalty>\n<auto_penalty>1</auto_penalty>\n";
+      } else {
+        out_ << "<laugon>PENALTY</laugon>\n";
+        constant("penalty", p.stiffness_mpa_mm);
+        out_ << "<auto_penalty>0</auto_penalty>\n";
+        constant("fric_coeff", p.friction);
+      }
+      out_ << "<two_pass>0</two_pass>\n<symmetric_stiffness>" << (!tied && p.friction > 0 ? 0 : 1) << "</symmetric_stiffness>\n</contact>\n";
+    }
+    if (any) out_ << "</Contact>\n";
+  }
+
+  void load_curve() {
+    if (!sets_.has_load_case()) return;
     out_ << "<LoadData>\n<load_controller id=\"1\" type=\"loadcurve\">\n<interpolate>LINEAR</interpolate>\n"
             "<extend>CONSTANT</extend>\n<points>\n<pt>0,0</pt>\n<pt>1,1</pt>\n</points>\n</load_controller>\n</LoadData>\n";
   }

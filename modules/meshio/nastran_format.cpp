@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ class NastranFile {
     nodes();
     elements();
     materials();
+    ties();
     load_case();
     out_ << "ENDDATA\n";
   }
@@ -195,6 +197,37 @@ class NastranFile {
     }
   }
 
+  /// Nodes that follow another one at the same place: a rigid element each, over the axes that are not supported.
+  void ties() {
+    std::map<std::int32_t, std::int32_t> follows;
+    for (const Tie& t : sets_.ties)
+      for (const auto& [copy, node] : t.nodes) follows[copy] = node;
+    std::int64_t number = static_cast<std::int64_t>(mesh_.tets.size());
+    for (const ShellSet& s : sets_.shells) number += static_cast<std::int64_t>(s.faces.size());
+    std::map<std::int32_t, int> held;  // axes, as bits
+    for (const Support& s : sets_.supports)
+      for (const std::int32_t v : nodes_of(s).nodes)
+        for (int axis = 0; axis < 3; ++axis)
+          if (s.value_mm[axis]) held[v] |= 1 << axis;
+    if (!follows.empty()) out_ << "$ tied parts\n";
+    for (const auto& [copy, first] : follows) {
+      std::int32_t node = first;  // the one that follows none
+      while (follows.count(node) > 0) node = follows.at(node);
+      std::string axes;
+      for (int axis = 0; axis < 3; ++axis)
+        if (held.count(copy) == 0 || (held.at(copy) >> axis & 1) == 0) axes += static_cast<char>('1' + axis);
+      if (axes.empty()) continue;
+      out_ << "RBE2    ";
+      small(++number);
+      small(static_cast<std::int64_t>(node) + 1);
+      padded(axes, 8);
+      small(static_cast<std::int64_t>(copy) + 1);
+      out_ << '\n';
+    }
+    for (const SurfacePair& p : sets_.pairs)
+      if (p.contact != Contact::tie) out_ << "$ surfaces that face each other, without contact here: " << p.primary << " and " << p.secondary << '\n';
+  }
+
   bool moves() const {
     for (const Support& s : sets_.supports)
       for (const auto& v : s.value_mm)
@@ -202,30 +235,29 @@ class NastranFile {
     return false;
   }
 
-  const NodeSet* find(const std::string& name) const {
+  const NodeSet& nodes_of(const Support& support) const {
     for (const NodeSet& s : sets_.node_sets)
-      if (s.name == name) return &s;
-    return nullptr;
+      if (s.name == support.set) return s;
+    fail_internal("a support names a set that is not there", support.set);
   }
 
   /// SPC1 holds degrees of freedom; a displacement that is not 0 is an SPCD beside it.
   void load_case() {
     for (const Support& s : sets_.supports) {
-      const NodeSet* nodes = find(s.set);
-      if (nodes == nullptr) fail_internal("a support names a set that is not there", s.set);
+      const std::vector<std::int32_t>& nodes = nodes_of(s).nodes;
       std::string axes;
       for (int axis = 0; axis < 3; ++axis)
         if (s.value_mm[axis]) axes += static_cast<char>('1' + axis);
-      for (std::size_t i = 0; i < nodes->nodes.size(); i += 6) {
+      for (std::size_t i = 0; i < nodes.size(); i += 6) {
         out_ << "SPC1    ";
         small(1);
         padded(axes, 8);
-        for (std::size_t k = i; k < std::min(i + 6, nodes->nodes.size()); ++k) small(static_cast<std::int64_t>(nodes->nodes[k]) + 1);
+        for (std::size_t k = i; k < std::min(i + 6, nodes.size()); ++k) small(static_cast<std::int64_t>(nodes[k]) + 1);
         out_ << '\n';
       }
       for (int axis = 0; axis < 3; ++axis) {
         if (!s.value_mm[axis] || *s.value_mm[axis] == 0) continue;
-        for (const std::int32_t v : nodes->nodes) {
+        for (const std::int32_t v : nodes) {
           out_ << "SPCD*   ";
           large(std::int64_t{2});
           large(static_cast<std::int64_t>(v) + 1);

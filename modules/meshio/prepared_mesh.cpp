@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace stackmesh {
 namespace {
@@ -260,14 +261,9 @@ std::array<std::int32_t, 6> PreparedMesh::outward_face(TetFace f) const {
 }
 
 std::string UniqueNames::add(std::string name) {
-  const auto lower = [](std::string text) {
-    for (char& c : text)
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-  };
   if (name.size() > max_length_) name.resize(max_length_);
   std::string unique = name;
-  for (int n = 2; !taken_.insert(lower(unique)).second; ++n) {
+  for (int n = 2; !taken_.insert(lower_case(unique)).second; ++n) {
     const std::string tail = "_" + std::to_string(n);
     unique = name.substr(0, std::min(name.size(), max_length_ - tail.size())) + tail;
   }

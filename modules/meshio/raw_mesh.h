@@ -61,7 +61,6 @@ class MeshBytes {
 /// Number of the text, or nothing; a leading + is fine.
 std::optional<double> to_number(std::string_view text);
 std::optional<std::int64_t> to_integer(std::string_view text);
-std::string lower_case(std::string_view text);
 std::string_view trimmed(std::string_view text);
 
 /// The elementary types of binary formats.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/text.h"
 #include "meshio/raw_mesh.h"
 
 namespace stackmesh {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "meshio/raw_mesh.h"
 
 namespace stackmesh {

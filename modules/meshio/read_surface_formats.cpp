@@ -1,6 +1,7 @@
 // STL, PLY, OBJ and OFF.
 #include <algorithm>
 
+#include "base/text.h"
 #include "meshio/raw_mesh.h"
 
 namespace stackmesh {

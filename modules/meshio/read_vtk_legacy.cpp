@@ -1,6 +1,7 @@
 // VTK's legacy files, 2.0 to 5.1, text and binary (big endian): PolyData and UnstructuredGrid.
 #include <algorithm>
 
+#include "base/text.h"
 #include "meshio/raw_mesh.h"
 
 namespace stackmesh {

@@ -5,6 +5,7 @@
 #include <pugixml.hpp>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "meshio/raw_mesh.h"
 
 namespace stackmesh {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "meshio/formats.h"
 
 namespace stackmesh {
@@ -35,9 +36,7 @@ std::size_t ending_of(const std::string& path) {
 
 template <std::size_t N>
 Writer find_writer(const Format (&formats)[N], const std::string& path) {
-  std::string ending = path.substr(ending_of(path));
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string ending = lower_case(path.substr(ending_of(path)));
   const auto* found = std::find_if(std::begin(formats), std::end(formats),
                                    [&](const Format& f) { return ending == f.ending; });
   return found == std::end(formats) ? nullptr : found->writer;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace stackmesh {
 namespace {
@@ -18,9 +19,7 @@ using Loop = std::vector<std::array<double, 2>>;
 
 std::string ending(const std::string& path) {
   const std::size_t dot = path.rfind('.');
-  std::string e = dot == std::string::npos ? "" : path.substr(dot);
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return e;
+  return dot == std::string::npos ? "" : lower_case(path.substr(dot));
 }
 
 std::array<double, 2> position(const Stack& stack, GridPoint p) { return {p.x * stack.grid_x_mm, p.y * stack.grid_y_mm}; }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -33,9 +34,27 @@ struct FaceSet {
   std::vector<TetFace> faces;
 };
 
+/// What parts that face each other do to each other.
+enum class Contact {
+  none,     ///< nothing: their surfaces are named only
+  tie,      ///< they stay joined
+  contact,  ///< they press, and may slide and part
+};
+
 /// Two surfaces that lie on each other, each from its own side.
 struct SurfacePair {
   std::string name, primary, secondary;  ///< names of face sets
+  std::array<std::string, 2> parts;      ///< whose surfaces they are
+  Contact contact = Contact::none;
+  double stiffness_mpa_mm = 0;  ///< of contact: pressure per mm of penetration
+  double friction = 0;          ///< coefficient of contact
+};
+
+/// Nodes that stay where others are: each the copy of a node that lies at the same place in another part.
+struct Tie {
+  std::string name;   ///< of a node set, the copies
+  std::string faces;  ///< of a face set, that the nodes they follow are on
+  std::vector<std::pair<std::int32_t, std::int32_t>> nodes;  ///< a copy, and the node that it follows; ascending; no copy twice
 };
 
 /// Elements of one material. A label with a mapped modulus has one for each of its bins.
@@ -66,6 +85,8 @@ struct SolverSets {
   std::vector<NodeSet> node_sets;
   std::vector<FaceSet> surfaces;
   std::vector<SurfacePair> pairs;
+  std::vector<Tie> ties;                   ///< of pairs that are tied; no node follows itself by way of others
+  std::vector<std::int32_t> original;      ///< per node the one it was before parts were given their own copies; empty: no parts
   std::vector<ElementMaterial> materials;  ///< every tet is in exactly one, or there are none
   bool placeholder_materials = false;      ///< nobody gave any: E = 1 MPa, Poisson's ratio 0.3
   std::vector<Label> mapped;               ///< labels whose modulus varies from tet to tet
@@ -75,6 +96,9 @@ struct SolverSets {
   std::vector<ShellSet> shells;
   std::vector<Support> supports;
   std::vector<std::pair<std::int32_t, Vec3>> forces_n;  ///< on nodes, ascending
+  bool has_contact() const {
+    return std::any_of(pairs.begin(), pairs.end(), [](const SurfacePair& p) { return p.contact == Contact::contact; });
+  }
   bool has_load_case() const { return !supports.empty() || !forces_n.empty(); }
 };
 

@@ -4,8 +4,10 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "fem/assign_materials.h"
 #include "fem/element_quality.h"
+#include "fem/join_parts.h"
 #include "fem/label_table.h"
 #include "fem/load_case.h"
 #include "image/read_image.h"
@@ -16,10 +18,6 @@
 
 namespace stackmesh {
 namespace {
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 class FemRun {
  public:
@@ -200,6 +198,11 @@ class FemRun {
     if (!plan_) report.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
     if (plan_) apply_load_case(model, plan_->load_case, o_.materials);
+    JoinOptions join;
+    join.others = o_.contact;
+    if (plan_) join.laws = &plan_->contacts;
+    join.path = o_.materials;
+    join_parts(model, join);
     report.fem = summary(model, materials);
 
     MeshWriteOptions write = o_.mesh.write;

@@ -14,6 +14,7 @@ struct FemRunOptions {
   std::string materials;  ///< law file; empty: none
   std::optional<int> erode_px;  ///< instead of the law file's
   std::vector<std::pair<std::string, std::string>> parts;   ///< name, labels as --label takes them
+  Contact contact = Contact::tie;  ///< between parts, where the law file says nothing
   std::vector<std::pair<std::string, double>> skins;        ///< label, thickness in mm
   std::vector<std::string> selections;                      ///< see fem/selection.h
   double sharp_deg = 50;

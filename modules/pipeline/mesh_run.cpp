@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "interpolate/virtual_slices.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
@@ -16,10 +17,6 @@
 
 namespace stackmesh {
 namespace {
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 class MeshRun {
  public:

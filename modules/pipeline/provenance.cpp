@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/sha256.h"
+#include "base/text.h"
 
 namespace stackmesh {
 namespace {
@@ -29,10 +30,6 @@ std::string header_value(const std::string& path, const std::string& key) {
     return line.substr(from);
   }
   return "";
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 void add_files(const std::string& given, std::vector<std::string>& files) {

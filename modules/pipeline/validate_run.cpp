@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "base/text.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/stage_clock.h"
@@ -19,10 +20,6 @@
 namespace stackmesh {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 std::string percent(double share) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f", share);
@@ -32,10 +29,8 @@ std::string percent(double share) {
 /// Letters and digits only, in lower case: how decks and groups spell a name.
 std::string plain(const std::string& name) {
   std::string text;
-  for (char c : name) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (const char c : lower_case(name))
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) text += c;
-  }
   return text;
 }
 

@@ -133,7 +133,15 @@ Json provenance(const std::optional<Provenance>& p) {
 Json fem(const FemReport& f) {
   Json sets = Json::array(), pairs = Json::array(), materials = Json::array(), skins = Json::array();
   for (const FemSet& s : f.sets) sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
-  for (const SurfacePair& p : f.pairs) pairs.push_back({{"name", p.name}, {"primary", p.primary}, {"secondary", p.secondary}});
+  for (const SurfacePair& p : f.pairs) {
+    Json row = {{"name", p.name}, {"primary", p.primary}, {"secondary", p.secondary}, {"parts", p.parts},
+                {"contact", p.contact == Contact::tie ? "tie" : p.contact == Contact::contact ? "contact" : "none"}};
+    if (p.contact == Contact::contact) {
+      row["stiffness_mpa_mm"] = p.stiffness_mpa_mm;
+      row["friction"] = p.friction;
+    }
+    pairs.push_back(row);
+  }
   for (const MaterialRow& m : f.materials)
     materials.push_back({{"label", m.label},
                          {"name", m.name},

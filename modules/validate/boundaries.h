@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "model/complex.h"
 
 namespace stackmesh {
@@ -39,25 +40,5 @@ struct Boundaries {
 /// A triangle between a label and itself bounds nothing. @throws Error(input) for an index without a point or
 /// a coordinate that is not finite.
 Boundaries find_boundaries(const InterfaceComplex& complex, std::size_t limit);
-
-/// Sets of integers 0 .. n-1 that only merge; the smallest member names the set.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) {
-    for (std::size_t i = 0; i < n; ++i) parent_[i] = static_cast<std::int32_t>(i);
-  }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t i, std::int32_t j) {
-    i = find(i), j = find(j);
-    if (i < j) parent_[j] = i;
-    if (j < i) parent_[i] = j;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 }  // namespace stackmesh

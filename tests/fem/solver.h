@@ -37,6 +37,11 @@ class SolverTest : public ::testing::Test {
     text << file.rdbuf();
     return text.str();
   }
+  /// A law file of constant materials, in the units that every law file must state.
+  std::string law(const std::string& labels, const std::string& load_case, const std::string& more = "") const {
+    return write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"}, "labels": {)" + labels +
+                                 "}, " + more + R"("load_case": )" + load_case + "}");
+  }
   /// A shell command in the folder; its output goes to NAME.log.
   int run(const std::string& command, const std::string& name = "run") const {
     std::fflush(nullptr);

@@ -8,13 +8,7 @@ using blocks::disturb;
 
 namespace {
 
-class Solver : public solver::SolverTest {
- protected:
-  std::string law(const std::string& labels, const std::string& load_case, const std::string& more = "") const {
-    return write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"}, "labels": {)" + labels +
-                                 "}, " + more + R"("load_case": )" + load_case + "}");
-  }
-};
+class Solver : public solver::SolverTest {};
 
 class SolverOrders : public Solver, public ::testing::WithParamInterface<int> {};
 

@@ -5,6 +5,7 @@ usage: fem_answers.py uniform FRD E NU STRESS AXIS-LENGTH      a bar along z in 
        fem_answers.py series FRD E1 L1 E2 L2 STRESS            two bars end to end along z, no lateral contraction
        fem_answers.py bar FRD E LENGTH STRESS TOLERANCE        held all round at z = 0: end displacement and stress at half length
        fem_answers.py reaction FRD LENGTH FORCE TOLERANCE      nodes at z = 0 together bear FORCE along z
+       fem_answers.py contact FRD E NU STRESS INTERFACE K      two bars that touch at z = INTERFACE, pressed together (STRESS < 0)
        fem_answers.py compare LINEAR.frd QUADRATIC.frd FORCE   both in balance; the linear one stiffer, but not by half
        fem_answers.py balance FRD FORCE SMALLEST LARGEST       in balance; largest displacement (mm) within the range
 Exits 1 with what differs, 77 without numpy.
@@ -62,6 +63,20 @@ def main():
         close(u[at, 2], s * l1 / e1, 1e-5 * s * l1 / e1, "displacement of the interface")
         close(u[:, 2], meant, 1e-5 * meant.max(), "displacement")
         close(stress[:, 2], s, 1e-4 * s, "stress")
+    elif what == "contact":
+        young, nu, s, at, stiffness = numbers
+        strain = s / young
+        upper = p[:, 2] > at + 1e-9
+        touching = np.abs(p[:, 2] - at) < 1e-9
+        jump = s / stiffness  # the bodies enter each other by so much
+        meant = strain * p[:, 2] + np.where(upper, jump, 0)
+        close(u[~touching, 2], meant[~touching], 1e-3 * abs(strain * at), "displacement along the bars")
+        z = np.sort(u[touching, 2])
+        half = len(z) // 2
+        need(len(z) == 2 * half > 0, "each body has its own nodes on the interface")
+        close(z[:half].mean() - z[half:].mean(), jump, 0.01 * abs(jump), "penetration")
+        close(u[:, 0], -nu * strain * p[:, 0], 1e-3 * abs(strain * at), "displacement across")
+        close(stress, np.array([0, 0, s, 0, 0, 0]), 0.005 * abs(s), "stress")
     elif what == "bar":
         young, length, s, tolerance = numbers
         end = p[:, 2] > length - 1e-9
@@ -72,7 +87,7 @@ def main():
     elif what == "reaction":
         length, force, tolerance = numbers
         held = np.abs(p[:, 2]) < 1e-6
-        close(abs(first.fields["FORC"][held, 2].sum()), force, tolerance * force, "reaction")
+        close(abs(first.fields["FORC"][held, 2].sum()), force, tolerance * force if force else tolerance, "reaction")
     elif what == "compare":
         second = read_frd(sys.argv[3])
         need(first.tets.shape[1] == 4 and second.tets.shape[1] == 10, "orders")

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace stackmesh {
+
+/// Sets of integers 0 .. n-1 that only merge; the smallest member names the set.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t n = 0) {
+    while (parent_.size() < n) add();
+  }
+  /// One more integer, a set of its own.
+  std::int32_t add() {
+    parent_.push_back(static_cast<std::int32_t>(parent_.size()));
+    return parent_.back();
+  }
+  std::int32_t find(std::int32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::int32_t i, std::int32_t j) {
+    i = find(i), j = find(j);
+    if (i < j) parent_[j] = i;
+    if (j < i) parent_[i] = j;
+  }
+  std::size_t size() const { return parent_.size(); }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace stackmesh
