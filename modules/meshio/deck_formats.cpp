@@ -23,6 +23,13 @@ void write_element(OutputBuffer& out, std::size_t number, const std::array<std::
   for (std::size_t k = 0; k < count; ++k) out << ", " << nodes[k] + 1;
 }
 
+/// A face as shells of three nodes: Abaqus and CalculiX have none of six in common (STRI65, S6), so a second-order face gets four.
+std::vector<std::array<std::int32_t, 3>> shells_of_three_nodes(const PreparedMesh& mesh, TetFace face) {
+  const auto v = mesh.outward_face(face);
+  if (!mesh.second_order()) return {{v[0], v[1], v[2]}};
+  return {{v[0], v[3], v[5]}, {v[3], v[1], v[4]}, {v[5], v[4], v[2]}, {v[3], v[4], v[5]}};
+}
+
 void write_elastic(OutputBuffer& out, const std::string& name, double young_mpa, double poisson, double density_t_mm3) {
   out << "*MATERIAL, NAME=" << name << "\n*ELASTIC\n";
   out.print20(young_mpa);
@@ -142,11 +149,12 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
   out << "*ELSET, ELSET=EALL, GENERATE\n1, " << mesh.tets.size() << ", 1\n";
   std::size_t number = mesh.tets.size();
   for (const ShellSet& s : mesh.sets.shells) {
-    out << "** skin of label " << s.label << "\n*ELEMENT, TYPE=" << (mesh.second_order() ? "S6" : "S3") << ", ELSET=" << s.name << '\n';
-    for (const TetFace f : s.faces) {
-      write_element(out, ++number, mesh.outward_face(f), mesh.second_order() ? 6 : 3);
-      out << '\n';
-    }
+    out << "** skin of label " << s.label << "\n*ELEMENT, TYPE=S3, ELSET=" << s.name << '\n';
+    for (const TetFace f : s.faces)
+      for (const auto& v : shells_of_three_nodes(mesh, f)) {
+        write_element(out, ++number, v, 3);
+        out << '\n';
+      }
   }
 
   const SolverSets& sets = mesh.sets;

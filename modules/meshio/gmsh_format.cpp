@@ -27,9 +27,22 @@ struct Surfaces {
   std::vector<Patch> patches;
   std::vector<std::string> groups;
 
+  std::vector<const NodeSet*> points;  ///< sets of nodes that are not those of a surface: groups of dimension 0
+
   explicit Surfaces(const PreparedMesh& mesh) {
+    for (const NodeSet& n : mesh.sets.node_sets)
+      if (std::none_of(mesh.sets.surfaces.begin(), mesh.sets.surfaces.end(), [&](const FaceSet& f) { return f.name == n.name; })) points.push_back(&n);
     if (mesh.sets.surfaces.empty()) from_pairs(mesh);
     else from_sets(mesh);
+  }
+  std::size_t point_count() const {
+    std::size_t n = 0;
+    for (const NodeSet* set : points) n += set->nodes.size();
+    return n;
+  }
+  /// The tag of a set of nodes, behind those of the surfaces.
+  std::int32_t point_tag(std::int32_t surface_tag, std::size_t i) const {
+    return surface_tag + static_cast<std::int32_t>(std::max(groups.size(), patches.size()) + i);
   }
   std::size_t triangles() const {
     std::size_t n = 0;
@@ -103,7 +116,7 @@ std::int32_t first_surface_tag(const PreparedMesh& mesh, const Surfaces& surface
                   "renumber the label or write another format");
     last = std::max<std::int64_t>(last, g.label);
   }
-  if (last + static_cast<std::int64_t>(std::max(surfaces.groups.size(), surfaces.patches.size())) > std::numeric_limits<std::int32_t>::max())
+  if (last + static_cast<std::int64_t>(std::max(surfaces.groups.size(), surfaces.patches.size()) + surfaces.points.size()) > std::numeric_limits<std::int32_t>::max())
     fail_output("no Gmsh tag is left for the surfaces", "label " + std::to_string(last),
                 "renumber the label or write another format");
   return static_cast<std::int32_t>(last) + 1;
@@ -111,7 +124,9 @@ std::int32_t first_surface_tag(const PreparedMesh& mesh, const Surfaces& surface
 
 void write_names(OutputBuffer& out, const PreparedMesh& mesh, const Surfaces& surfaces, std::int32_t surface_tag) {
   if (!mesh.space.empty()) out << "$Comments\n" << mesh.space_mark() << ", mm\n$EndComments\n";
-  out << "$PhysicalNames\n" << surfaces.groups.size() + mesh.labels.size() << '\n';
+  out << "$PhysicalNames\n" << surfaces.points.size() + surfaces.groups.size() + mesh.labels.size() << '\n';
+  for (std::size_t i = 0; i < surfaces.points.size(); ++i)
+    out << "0 " << surfaces.point_tag(surface_tag, i) << " \"" << surfaces.points[i]->name << "\"\n";
   for (std::size_t i = 0; i < surfaces.groups.size(); ++i)
     out << "2 " << surface_tag + static_cast<std::int32_t>(i) << " \"" << surfaces.groups[i] << "\"\n";
   for (const LabelGroup& g : mesh.labels) out << "3 " << g.label << " \"" << g.name << "\"\n";
@@ -206,7 +221,13 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
   write_names(out, mesh, surfaces, surface_tag);
 
-  out << "$Entities\n0 0 " << surfaces.patches.size() << ' ' << mesh.labels.size() << '\n';
+  // A set of nodes is an entity with a point element at each of them; the nodes are owned by surfaces and volumes.
+  out << "$Entities\n" << surfaces.points.size() << " 0 " << surfaces.patches.size() << ' ' << mesh.labels.size() << '\n';
+  for (std::size_t i = 0; i < surfaces.points.size(); ++i) {
+    const std::int32_t tag = surfaces.point_tag(surface_tag, i);
+    const Vec3 p = mesh.points[surfaces.points[i]->nodes.at(0)];
+    out << tag << ' ' << p.x << ' ' << p.y << ' ' << p.z << " 1 " << tag << '\n';
+  }
   for (const Entity& e : entities) {
     out << e.tag;
     for (const Vec3 p : {e.box.low, e.box.high}) out << ' ' << p.x << ' ' << p.y << ' ' << p.z;
@@ -231,9 +252,14 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   out << "$EndNodes\n";
 
   // Tets first in number, so that a tet has the same number in every format.
-  const std::size_t count = surfaces.triangles() + mesh.tets.size();
-  out << "$Elements\n" << entities.size() << ' ' << count << " 1 " << count << '\n';
-  std::size_t number = mesh.tets.size();
+  const std::size_t count = surfaces.triangles() + mesh.tets.size() + surfaces.point_count();
+  out << "$Elements\n" << surfaces.points.size() + entities.size() << ' ' << count << " 1 " << count << '\n';
+  std::size_t number = mesh.tets.size() + surfaces.triangles();
+  for (std::size_t i = 0; i < surfaces.points.size(); ++i) {
+    out << "0 " << surfaces.point_tag(surface_tag, i) << " 15 " << surfaces.points[i]->nodes.size() << '\n';
+    for (const std::int32_t v : surfaces.points[i]->nodes) out << ++number << ' ' << v + 1 << '\n';
+  }
+  number = mesh.tets.size();
   for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
     const Patch& patch = surfaces.patches[i];
     out << "2 " << surface_tag + static_cast<std::int32_t>(i) << (mesh.second_order() ? " 9 " : " 2 ") << patch.triangles.size() << '\n';
@@ -264,7 +290,7 @@ void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
     out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
   }
   // This version has one group an element: a triangle of several is written once for each, as Gmsh does.
-  std::size_t count = mesh.tets.size();
+  std::size_t count = mesh.tets.size() + surfaces.point_count();
   for (const Patch& patch : surfaces.patches) count += patch.groups.size() * patch.triangles.size();
   out << "$EndNodes\n$Elements\n" << count << '\n';
   // Number, type, two tags (physical group and entity), nodes.
@@ -281,6 +307,11 @@ void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
             << surface_tag + static_cast<std::int32_t>(i);
         write_triangle(out, t);
       }
+  for (std::size_t i = 0; i < surfaces.points.size(); ++i)
+    for (const std::int32_t v : surfaces.points[i]->nodes) {
+      const std::int32_t tag = surfaces.point_tag(surface_tag, i);
+      out << ++number << " 15 2 " << tag << ' ' << tag << ' ' << v + 1 << '\n';
+    }
   out << "$EndElements\n";
 }
 

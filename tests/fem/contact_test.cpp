@@ -1,4 +1,6 @@
 // Parts that are tied, or press on each other: CalculiX runs the decks unedited, and finds what is known beforehand.
+#include <map>
+
 #include "blocks.h"
 #include "solver.h"
 
@@ -87,6 +89,44 @@ TEST_P(ContactOrders, FrictionHoldsWhatSlidingAloneWouldNot) {
   EXPECT_NEAR(report().at("fem").at("pairs")[0].at("stiffness_mpa_mm").get<double>(), 50 * 1000 / ((1 + 1 + std::sqrt(2.0)) / 3), 1);
   solve("rub");
   expect_answer("reaction rub.frd 6 40 0.001");
+}
+
+TEST_P(ContactOrders, TiedPartsOfACurvedModelMoveAsTheWholeDoes) {
+  NEEDS_CCX();
+  law(R"("1": {"E_MPa": 1000, "poisson": 0.3}, "2": {"E_MPa": 300, "poisson": 0.3}, "3": {"E_MPa": 5000, "poisson": 0.3})",
+      R"({"fixed": [{"set": "border_z_low"}], "loaded": [{"set": "border_z_high", "force_N": [100, 50, -300]}]})");
+  const std::string common = "'" STACKMESH_TESTDATA "/border.nii.gz' --edge-length 6 --materials law.json" + order();
+  fem(common + "--parts A=1 B=2 C=3 -o parts.inp");
+  fem(common + "-o whole.inp");
+  solve("parts");
+  solve("whole");
+  expect_answer("same parts.frd whole.frd");
+}
+
+TEST_P(ContactOrders, SetsOfNodesArePointsInGmsh) {
+  if (run("command -v gmsh") != 0) GTEST_SKIP() << "NOT TESTED: gmsh is not installed";
+  write_mesh("three.vtu", block(2, 2, 4, {1, 1, 1.5}, [](int i, int, int k) { return i == 0 ? 1 : k < 2 ? 2 : 3; }));
+  fem("three.vtu --parts A=1 B=2 C=3" + order() + "-o four.msh --report r.json");
+  fem("three.vtu --parts A=1 B=2 C=3" + order() + "--msh2 -o two.msh");
+  std::map<std::string, std::size_t> meant;  // sets without faces
+  const auto model = report().at("fem");
+  for (const auto& s : model.at("sets"))
+    if (s.at("faces") == 0) meant[s.at("name")] = s.at("nodes");
+  EXPECT_EQ(meant.count("triple_A_B_C"), 1u);
+  for (const std::string name : {"four", "two"}) {
+    ASSERT_EQ(run("gmsh " + name + ".msh -save -format msh22 -o again.msh", "gmsh"), 0) << read("gmsh.log");
+    std::istringstream file(read("again.msh"));
+    std::map<std::string, std::string> names;
+    std::map<std::string, std::size_t> found;
+    for (std::string line; std::getline(file, line);) {
+      std::istringstream words(line);
+      std::string a, b, c, group;
+      words >> a >> b >> c >> group;
+      if (a == "0" && c.size() > 2 && c[0] == '"') names[b] = c.substr(1, c.size() - 2);
+      if (b == "15" && names.count(group) > 0) ++found[names[group]];
+    }
+    EXPECT_EQ(found, meant) << name;
+  }
 }
 
 class ContactInput : public solver::SolverTest {};

@@ -7,6 +7,7 @@ usage: fem_answers.py uniform FRD E NU STRESS AXIS-LENGTH      a bar along z in 
        fem_answers.py reaction FRD LENGTH FORCE TOLERANCE      nodes at z = 0 together bear FORCE along z
        fem_answers.py contact FRD E NU STRESS INTERFACE K      two bars that touch at z = INTERFACE, pressed together (STRESS < 0)
        fem_answers.py compare LINEAR.frd QUADRATIC.frd FORCE   both in balance; the linear one stiffer, but not by half
+       fem_answers.py same FRD OTHER.frd                       nodes at the same place move alike
        fem_answers.py balance FRD FORCE SMALLEST LARGEST       in balance; largest displacement (mm) within the range
 Exits 1 with what differs, 77 without numpy.
 """
@@ -44,7 +45,7 @@ def balance(result, force):
 
 def main():
     what, first = sys.argv[1], read_frd(sys.argv[2])
-    numbers = [float(v) for v in sys.argv[3:]] if what != "compare" else [float(sys.argv[4])]
+    numbers = [float(v) for v in sys.argv[3:] if not v.endswith(".frd")]
     p, u = first.points, first.fields["DISP"][:, :3]
     stress = first.fields["STRESS"]
     if what == "uniform":
@@ -96,6 +97,13 @@ def main():
         one, two = (np.linalg.norm(r.fields["DISP"][:, :3], axis=1).max() for r in (first, second))
         print(f"largest displacement: linear {one:.4g}, quadratic {two:.4g} mm")
         need(0.5 * two < one < two, "the linear mesh is not the stiffer one, or far too stiff")
+    elif what == "same":
+        second = read_frd(sys.argv[3])
+        at = {tuple(point): i for i, point in enumerate(second.points)}
+        twin = [at[tuple(point)] for point in p]
+        need(len(p) > len(second.points), "no node is there twice")
+        other = second.fields["DISP"][twin, :3]
+        close(u, other, 2e-5 * np.abs(other).max(), "displacement")
     elif what == "balance":
         force, smallest, largest = numbers
         balance(first, force)
