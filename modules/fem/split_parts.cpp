@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 namespace stackmesh {
 
@@ -33,6 +34,26 @@ std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& par
       if (part_of[t] != owner[v]) v = copies.at({v, part_of[t]});
     });
   return original;
+}
+
+std::size_t join_equal_nodes(TetMesh& mesh) {
+  std::vector<std::int32_t> order(mesh.points.size()), first(mesh.points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](std::int32_t v) { return std::tie(mesh.points[v].x, mesh.points[v].y, mesh.points[v].z); };
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+  std::vector<char> joined(mesh.points.size(), 0);
+  const auto join = [&](auto& nodes) {
+    for (std::int32_t& v : nodes) {
+      joined[v] = first[v] != v;
+      v = first[v];
+    }
+  };
+  for (auto& t : mesh.tets) join(t);
+  for (auto& t : mesh.mid) join(t);
+  for (InterfaceTriangle& t : mesh.faces) join(t.v);
+  return static_cast<std::size_t>(std::count(joined.begin(), joined.end(), 1));
 }
 
 }  // namespace stackmesh

@@ -12,4 +12,8 @@ namespace stackmesh {
 /// @return for each node of the new mesh the node that it was
 std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& part_of);
 
+/// The other way round: nodes of exactly equal coordinates become one, the first of them.
+/// @return how many nodes became another; 0: the mesh is as it was. Points may be left unused.
+std::size_t join_equal_nodes(TetMesh& mesh);
+
 }  // namespace stackmesh

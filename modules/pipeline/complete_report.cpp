@@ -10,40 +10,13 @@
 namespace stackmesh {
 namespace {
 
-void fill_rows(RunReport& report, const std::vector<LabelThickness>& thickness, const std::vector<LabelFidelity>* fidelity) {
-  for (LabelReport& row : report.labels) {
-    for (const LabelSurface& s : report.surface->labels)
-      if (s.label == row.label) {
-        row.closed = s.closed;
-        row.components = s.components;
-        row.euler = s.euler;
-        if (s.closed) row.genus = s.genus;
-        row.surface_volume_mm3 = s.volume_mm3;
-        row.surface_area_mm2 = s.area_mm2;
-        row.angle_min_deg = s.angle_min_deg;
-      }
-    if (report.volume)
-      for (const LabelTets& t : report.volume->labels)
-        if (t.label == row.label) {
-          row.tets = t.tets;
-          row.tet_volume_mm3 = t.volume_mm3;
-          row.dihedral_min_deg = t.dihedral_min_deg;
-          row.dihedral_max_deg = t.dihedral_max_deg;
-        }
+void fill_thickness(RunReport& report, const std::vector<LabelThickness>& thickness) {
+  for (LabelReport& row : report.labels)
     for (const LabelThickness& t : thickness)
       if (t.label == row.label) {
         row.thin_share = t.thin_share;
         row.thickness_p5_mm = t.p5_mm;
       }
-    if (!fidelity) continue;
-    for (const LabelFidelity& f : *fidelity)
-      if (f.label == row.label) {
-        row.dice = f.dice;
-        row.distance_mm = f.distance_mm;
-        row.reverse_distance_mm = f.reverse_distance_mm;
-        row.input_components = f.input_components;
-      }
-  }
 }
 
 std::function<std::optional<int>(const Vec3&)> section_finder(const Judged& j) {
@@ -65,12 +38,60 @@ std::function<std::optional<int>(const Vec3&)> section_finder(const Judged& j) {
 
 }  // namespace
 
+void check_mesh(RunReport& report, const InterfaceComplex& surface, const TetMesh* mesh, int threads) {
+  SurfaceCheckOptions check;
+  check.threads = threads;
+  check.list_limit = 20000;
+  report.surface = check_surface(surface, check);
+  report.surface_level = "";
+  if (mesh == nullptr) return;
+  std::vector<char> used(surface.points.size(), 0);  // the points inside are no vertices of the surface
+  for (const InterfaceTriangle& t : surface.triangles)
+    for (const std::int32_t v : t.v) used[v] = 1;
+  report.surface->vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+  report.volume = check_volume(*mesh, {threads});
+  const bool fine = report.volume->inverted == 0 && report.volume->conforms && report.surface->open_edges == 0 && report.surface->self_intersections == 0;
+  report.closure = fine ? "verified" : "failed";
+}
+
+void fill_label_rows(RunReport& report, const std::vector<LabelFidelity>* fidelity) {
+  for (LabelReport& row : report.labels) {
+    for (const LabelSurface& s : report.surface->labels)
+      if (s.label == row.label) {
+        row.closed = s.closed;
+        row.components = s.components;
+        row.euler = s.euler;
+        if (s.closed) row.genus = s.genus;
+        row.surface_volume_mm3 = s.volume_mm3;
+        row.surface_area_mm2 = s.area_mm2;
+        row.angle_min_deg = s.angle_min_deg;
+      }
+    if (report.volume)
+      for (const LabelTets& t : report.volume->labels)
+        if (t.label == row.label) {
+          row.tets = t.tets;
+          row.tet_volume_mm3 = t.volume_mm3;
+          row.dihedral_min_deg = t.dihedral_min_deg;
+          row.dihedral_max_deg = t.dihedral_max_deg;
+        }
+    if (!fidelity) continue;
+    for (const LabelFidelity& f : *fidelity)
+      if (f.label == row.label) {
+        row.dice = f.dice;
+        row.distance_mm = f.distance_mm;
+        row.reverse_distance_mm = f.reverse_distance_mm;
+        row.input_components = f.input_components;
+      }
+  }
+}
+
 void complete_report(RunReport& report, const Judged& j) {
   ThicknessOptions thick;
   thick.threads = j.threads;
   thick.elements = report.limits.thin_elements;
   const std::vector<LabelThickness> thickness = check_thickness(*j.surface, thick);
-  fill_rows(report, thickness, j.fidelity);
+  fill_label_rows(report, j.fidelity);
+  fill_thickness(report, thickness);
   JudgeInput in;
   in.surface = &*report.surface;
   if (report.volume) in.volume = &*report.volume;

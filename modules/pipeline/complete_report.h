@@ -9,6 +9,13 @@
 
 namespace stackmesh {
 
+/// Checks a given surface, and the tetrahedra that it bounds (nullptr: none): gives the report its `surface`, `volume` and
+/// `closure`.
+void check_mesh(RunReport& report, const InterfaceComplex& surface, const TetMesh* mesh, int threads);
+
+/// Gives the row of each label what `surface`, `volume` and the fidelity (nullptr: not measured) say of it.
+void fill_label_rows(RunReport& report, const std::vector<LabelFidelity>* fidelity = nullptr);
+
 /// What a report is about, once surface (and volume) are checked. Pointers may be null.
 struct Judged {
   const InterfaceComplex* surface = nullptr;  ///< in the frame of the labels, LPS

@@ -10,9 +10,13 @@
 #include "fem/join_parts.h"
 #include "fem/label_table.h"
 #include "fem/load_case.h"
+#include "fem/split_parts.h"
 #include "image/read_image.h"
 #include "meshio/read_mesh.h"
+#include "pipeline/complete_report.h"
+#include "pipeline/provenance.h"
 #include "pipeline/stage_clock.h"
+#include "report/html_report.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
 
@@ -52,6 +56,10 @@ class FemRun {
     MeshProduct product;
     clock.run("read", [&] { product = read(path, report); });
     clock.run("validate", [&] { check(product, report); });
+    if (product.space == WorldSpace::ras)  // it was read and judged in LPS
+      for (Vec3& p : product.mesh.points) p = {-p.x, -p.y, p.z};
+    HtmlPictures pictures;
+    if (std::any_of(o_.mesh.reports.begin(), o_.mesh.reports.end(), is_html)) clock.run("write", [&] { pictures = draw(product); });
     if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.threads;
@@ -59,11 +67,25 @@ class FemRun {
     }
     clock.run("write", [&] { model(std::move(product), report, files); });
     report.peak_rss_mb = peak_memory_mb();
-    const std::string json = o_.mesh.reports.empty() ? "" : to_json(report);
-    for (const std::string& r : o_.mesh.reports)
-      files.write(r, [&](std::FILE* f) { std::fwrite(json.data(), 1, json.size(), f); });
+    for (const std::string& r : o_.mesh.reports) {
+      const std::string text = is_html(r) ? to_html({{"mesh", &report, &pictures}}) : to_json(report);
+      files.write(r, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
+    }
     files.commit();
     return report;
+  }
+
+  static bool is_html(const std::string& path) { return ends_with(path, ".html"); }
+
+  HtmlPictures draw(const MeshProduct& product) const {
+    const InterfaceComplex surface = {product.mesh.points, product.mesh.faces};
+    HtmlScene scene;
+    scene.surface = &surface;
+    scene.mesh = &product.mesh;
+    scene.space = product.space == WorldSpace::none ? "none" : o_.mesh.space;
+    HtmlOptions options;
+    options.threads = o_.mesh.threads;
+    return draw_pictures(scene, options);
   }
 
   void check_outputs() const {
@@ -71,7 +93,7 @@ class FemRun {
       if (!is_volume_format(path))
         fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose .inp .feb .bdf .msh .vtu .vtk");
     for (const std::string& path : o_.mesh.reports)
-      if (!ends_with(path, ".json")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json");
+      if (!ends_with(path, ".json") && !is_html(path)) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json or .html");
     if (o_.mesh.space != "lps" && o_.mesh.space != "ras") fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
   }
 
@@ -91,8 +113,9 @@ class FemRun {
     product.space = o_.mesh.space == "ras" ? WorldSpace::ras : WorldSpace::lps;
     product.up = o_.up;
     if (file.space && *file.space == WorldSpace::none) product.space = WorldSpace::none;
-    else if (file.space.value_or(WorldSpace::lps) != product.space)
+    if (file.space && *file.space == WorldSpace::ras)
       for (Vec3& p : file.points) p = {-p.x, -p.y, p.z};
+    if (product.space == WorldSpace::none) report.input.space = "none";
     product.mesh.points = std::move(file.points);
     product.mesh.tets = std::move(file.tets);
     product.mesh.mid = std::move(file.midside);
@@ -150,21 +173,45 @@ class FemRun {
       mesh.mid.clear();
       report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
     }
-    mesh.faces = faces_of_tets(mesh);
-    report.volume = check_volume(mesh);
-    if (!report.volume->conforms)
-      report.warnings.push_back("the mesh does not conform: faces or edges of its tetrahedra do not match");
     for (const LabelInfo& l : product.labels) {
       LabelReport row;
       row.label = l.number;
       row.name = l.name;
-      for (const auto& tets : report.volume->labels)
-        if (tets.label == l.number) {
-          row.tets = tets.tets;
-          row.tet_volume_mm3 = tets.volume_mm3;
-        }
+      row.colour = l.colour;
       report.labels.push_back(row);
     }
+    // A mesh whose parts have nodes of their own is judged as one body.
+    TetMesh whole = mesh;
+    if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {
+      const std::string text = std::to_string(twins) + " nodes lie exactly on another one";
+      if (o_.parts.empty()) {
+        report.warnings.push_back(text + " and stay apart from it; --parts makes contact or ties of such faces");
+      } else {
+        report.warnings.push_back(text + ": they were joined to it before --parts");
+        mesh = whole;
+      }
+    }
+    mesh.faces = faces_of_tets(mesh);
+    whole.faces = faces_of_tets(whole);
+    judge(whole, report);
+    if (!report.volume->conforms)
+      report.warnings.push_back("the mesh does not conform: faces or edges of its tetrahedra do not match");
+  }
+
+  /// Its surface only for a report.
+  void judge(const TetMesh& mesh, RunReport& report) const {
+    if (o_.mesh.reports.empty()) {
+      report.volume = check_volume(mesh, {o_.mesh.threads});
+      return;
+    }
+    const InterfaceComplex surface = {mesh.points, mesh.faces};
+    check_mesh(report, surface, &mesh, o_.mesh.threads);
+    Judged judged;
+    judged.surface = &surface;
+    judged.mesh = &mesh;
+    judged.threads = o_.mesh.threads;
+    complete_report(report, judged);
+    report.provenance = find_provenance({report.input.path});
   }
 
   void model(MeshProduct product, RunReport& report, AtomicFiles& files) {

@@ -275,14 +275,6 @@ class MeshRun {
     SurfaceCheckOptions check;
     check.threads = o_.threads;
     report_.surface = check_surface(world_surface_, check);
-    for (LabelReport& row : report_.labels)
-      for (const LabelSurface& s : report_.surface->labels)
-        if (s.label == row.label) {
-          row.closed = s.closed;
-          row.components = s.components;
-          row.euler = s.euler;
-          row.surface_volume_mm3 = s.volume_mm3;
-        }
   }
 
   void judge_rest() {
@@ -292,14 +284,9 @@ class MeshRun {
       if (frame_.mirrors())
         for (std::size_t t = 0; t < mesh_->tets.size(); ++t) turn_round(*mesh_, t);
       report_.volume = check_volume(*mesh_, {o_.threads});
-      for (LabelReport& row : report_.labels)
-        for (const auto& l : report_.volume->labels)
-          if (l.label == row.label) {
-            row.tets = l.tets;
-            row.tet_volume_mm3 = l.volume_mm3;
-          }
     }
     if (wants_fidelity() && input_.volume) judge_fidelity();
+    fill_label_rows(report_, fidelity_.empty() ? nullptr : &fidelity_);
     for (const LabelReport& row : report_.labels)
       if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
     if (!o_.reports.empty()) give_verdicts();
@@ -324,18 +311,11 @@ class MeshRun {
     options.stack_axis = axis_;
     fidelity_ = check_fidelity(surface_, *input_.volume, options);
     for (const LabelFidelity& f : fidelity_)
-      for (LabelReport& row : report_.labels) {
-        if (row.label != f.label) continue;
-        row.dice = f.dice;
-        row.distance_mm = f.distance_mm;
-        row.reverse_distance_mm = f.reverse_distance_mm;
-        row.input_components = f.input_components;
-        if (f.missing_components > 0)
-          lost("label " + std::to_string(row.label) + ": " + std::to_string(f.missing_components) + " of " +
-               std::to_string(f.input_components) + " components are missing");
-        else if (!f.components_match)
-          lost("label " + std::to_string(row.label) + ": the surface's pieces do not match the input's components one to one");
-      }
+      if (f.missing_components > 0)
+        lost("label " + std::to_string(f.label) + ": " + std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) +
+             " components are missing");
+      else if (!f.components_match)
+        lost("label " + std::to_string(f.label) + ": the surface's pieces do not match the input's components one to one");
   }
 
   void lost(const std::string& text) {

@@ -453,24 +453,7 @@ class ValidateRun {
   // ---- checks
 
   void check() {
-    SurfaceCheckOptions surface;
-    surface.threads = o_.threads;
-    surface.list_limit = 20000;
-    report_.surface = check_surface(surface_, surface);
-    report_.surface_level = "";
-    if (!tets_.tets.empty()) {  // the points inside are no vertices of the surface
-      std::vector<char> used(surface_.points.size(), 0);
-      for (const InterfaceTriangle& t : surface_.triangles)
-        for (const std::int32_t v : t.v) used[v] = 1;
-      report_.surface->vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
-    }
-    if (!tets_.tets.empty()) {
-      VolumeCheckOptions volume;
-      volume.threads = o_.threads;
-      report_.volume = check_volume(tets_, volume);
-      const bool fine = report_.volume->inverted == 0 && report_.volume->conforms && report_.surface->open_edges == 0 && report_.surface->self_intersections == 0;
-      report_.closure = fine ? "verified" : "failed";
-    }
+    check_mesh(report_, surface_, tets_.tets.empty() ? nullptr : &tets_, o_.threads);
     if (against_ && against_->input.volume) check_against_labels();
   }
 

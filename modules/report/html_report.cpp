@@ -77,6 +77,7 @@ std::string to_html(const std::vector<HtmlSubject>& subjects) {
   }
   const std::string name = base_name(first.input.path);
   std::string title = "Mesh of " + name, subtitle;
+  if (first.fem) title = "Solver model of " + name;
   if (first.command == "validate") title = (subjects.size() > 1 ? std::to_string(subjects.size()) + " meshes" : subjects[0].name) + (name.empty() ? "" : " against " + name);
   const auto counted = [](std::size_t n, const char* one, const char* many) { return grouped(n) + " " + (n == 1 ? one : many); };
   subtitle = counted(first.labels.size(), "label", "labels");
@@ -92,6 +93,8 @@ std::string to_html(const std::vector<HtmlSubject>& subjects) {
                  {"compare_link", subjects.size() > 1 ? " <a href=\"#compare\">Comparison</a>" : ""},
                  {"compare", as_utf8(comparison_html(subjects))},
                  {"labels", as_utf8(labels_html(subjects, colours))},
+                 {"model_link", first.fem ? " <a href=\"#model\">Solver model</a>" : ""},
+                 {"model", as_utf8(model_html(subjects))},
                  {"defects", as_utf8(defects_html(subjects))},
                  {"provenance", as_utf8(provenance_html(subjects))},
                  {"data", for_script(Json({{"meshes", meshes}}).dump(-1, ' ', false, Json::error_handler_t::replace))},

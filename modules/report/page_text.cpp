@@ -122,6 +122,49 @@ std::string label_table(const RunReport& r, const std::vector<std::string>& colo
   return out + "</tbody></table></div>\n";
 }
 
+/// The head of a table that a click sorts; names that begin with * are of text columns.
+std::string table_head(const std::string& caption, const std::vector<std::string>& columns) {
+  std::string out = "<div class=\"table tall\" tabindex=\"0\" role=\"region\" aria-label=\"" + escaped(caption) + "\"><table class=\"sortable\"><caption>" + escaped(caption) +
+                    "</caption><thead><tr>";
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const bool text = columns[c][0] == '*';
+    out += std::string("<th scope=\"col\"") + (text ? " class=\"text\"" : "") + " data-sort=\"" + std::to_string(c) + "\">" + escaped(columns[c].substr(text ? 1 : 0)) + "</th>";
+  }
+  return out + "</tr></thead><tbody>\n";
+}
+
+std::string model_tables(const FemReport& f) {
+  const char* const end = "</tbody></table></div>\n";
+  const auto head = [](const std::string& name) { return "<tr><th scope=\"row\" class=\"text\">" + escaped(name) + "</th>"; };
+  std::string out = "<p>" + grouped(f.elements) + " tetrahedra of " + (f.order == 2 ? "10" : "4") + " nodes, " + grouped(f.nodes) + " nodes" +
+                    (f.shells > 0 ? ", " + grouped(f.shells) + " faces with a skin" : "") + "; units mm, N, MPa, t/mm\xc2\xb3. " +
+                    escaped(f.image.empty() ? "No intensities were mapped." : "Intensities: " + f.image + ".") + " " +
+                    escaped(f.materials_path.empty() ? "No law was given: materials hold the place (E = 1 MPa)." : "Law: " + f.materials_path + ".") + "</p>\n";
+  out += table_head("Materials: Young's modulus by label, MPa", {"*Label", "*law", "smallest", "mean", "largest", "Poisson", "density, t/mm\xc2\xb3", "to floor, %",
+                                                                "to ceiling, %", "materials", "elements", "voxels"});
+  for (const MaterialRow& m : f.materials)
+    out += head(std::to_string(m.label) + " " + m.name) + text_cell(m.law.empty() ? "constant" : m.law) + cell(m.young_min_mpa, 4) + cell(m.young_mean_mpa, 4) + cell(m.young_max_mpa, 4) +
+           cell(m.poisson) + cell(m.density_mean_t_mm3) + cell(100 * m.clamped_low) + cell(100 * m.clamped_high) + cell(static_cast<double>(m.materials), 6) +
+           cell(static_cast<double>(m.elements), 6) + cell(static_cast<double>(m.voxels), 6) + "</tr>\n";
+  out += end + table_head("Sets of nodes and faces", {"*Set", "*what", "nodes", "faces"});
+  for (const FemSet& s : f.sets)
+    out += head(s.name) + text_cell(s.note) + cell(static_cast<double>(s.nodes), 6) + cell(static_cast<double>(s.faces), 6) + "</tr>\n";
+  out += end;
+  if (!f.pairs.empty()) {
+    out += table_head("Parts that touch", {"*Pair", "*first surface", "*second surface", "*contact", "stiffness, MPa/mm", "friction"});
+    for (const SurfacePair& p : f.pairs) {
+      const bool contact = p.contact == Contact::contact;
+      out += head(p.parts[0] + ", " + p.parts[1]) + text_cell(p.primary) + text_cell(p.secondary) + text_cell(contact ? "contact" : p.contact == Contact::tie ? "tied" : "none") +
+             (contact ? cell(p.stiffness_mpa_mm, 4) + cell(p.friction) : "<td data-v=\"\">none</td><td data-v=\"\">none</td>") + "</tr>\n";
+    }
+    out += end;
+  }
+  if (f.supports + f.loaded_nodes > 0)
+    out += "<p>Load case: " + grouped(f.supports) + " supports, " + grouped(f.loaded_nodes) + " loaded nodes, force in all (" + number(f.force_n.x) + ", " + number(f.force_n.y) + ", " +
+           number(f.force_n.z) + ") N.</p>\n";
+  return out;
+}
+
 std::string stages_table(const RunReport& r, const std::string& of) {
   std::string out = "<div class=\"table\"><table><caption>" + escaped("Stages" + of) + "; peak memory " + number(r.peak_rss_mb) +
                     " MB</caption><thead><tr><th scope=\"col\" class=\"text\">stage</th><th scope=\"col\">wall, s</th><th scope=\"col\">CPU, s</th></tr></thead><tbody>\n";
@@ -201,6 +244,13 @@ std::string labels_html(const std::vector<HtmlSubject>& subjects, const std::vec
     out += std::string("<details") + (s == 0 ? " open" : "") + "><summary>" + escaped(subjects[s].name) + "</summary>\n" + table + "</details>\n";
   }
   return out;
+}
+
+std::string model_html(const std::vector<HtmlSubject>& subjects) {
+  std::string out;
+  for (const HtmlSubject& s : subjects)
+    if (s.report->fem) out += model_tables(*s.report->fem);
+  return out.empty() ? "" : "<section id=\"model\" aria-labelledby=\"model-title\"><h2 id=\"model-title\">Solver model</h2>\n" + out + "</section>\n";
 }
 
 Vec3 place_of(const Defect& defect, const HtmlSubject& subject) {

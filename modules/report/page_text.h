@@ -18,6 +18,8 @@ std::string verdict_html(const std::vector<HtmlSubject>& subjects);
 std::string comparison_html(const std::vector<HtmlSubject>& subjects);
 /// `colours` are beside the labels of the first report.
 std::string labels_html(const std::vector<HtmlSubject>& subjects, const std::vector<std::string>& colours);
+/// Sets, materials and loads of solver models; empty where there is none.
+std::string model_html(const std::vector<HtmlSubject>& subjects);
 /// Where it fails, with a button for each place that the scripts serve.
 std::string defects_html(const std::vector<HtmlSubject>& subjects);
 std::string provenance_html(const std::vector<HtmlSubject>& subjects);

@@ -8,6 +8,7 @@
 #include "fem/label_table.h"
 #include "fem/load_case.h"
 #include "fem/name_sets.h"
+#include "fem/split_parts.h"
 #include "volume/raise_order.h"
 
 using namespace stackmesh;
@@ -147,6 +148,19 @@ TEST(Parts, NodesAreSharedWithinAPartAndDoubledBetweenParts) {
   for (std::size_t t = 0; t < m.mesh.tets.size(); ++t)
     for (const std::int32_t v : m.mesh.tets[t]) parts[v].insert(m.mesh.labels[t] % 2);
   for (const auto& [v, p] : parts) EXPECT_EQ(p.size(), 1u);
+}
+
+TEST(Parts, JoiningEqualNodesUndoesTheSplit) {
+  const TetMesh mesh = raise_order(block(2, 2, 2, {1, 1, 1}, [](int i, int j, int) { return i == 0 ? 1 : 2 + j; })).mesh;
+  SetOptions options;
+  options.parts = {{"A", {1}}, {"B", {2}}};
+  SolverModel split = name_sets(mesh, {}, options);
+  EXPECT_EQ(join_equal_nodes(split.mesh), split.mesh.points.size() - mesh.points.size());
+  const SolverModel again = name_sets(split.mesh, {}, {}), meant = name_sets(mesh, {}, {});
+  EXPECT_EQ(again.mesh.points.size(), mesh.points.size());
+  ASSERT_EQ(again.sets.surfaces.size(), meant.sets.surfaces.size());
+  for (const FaceSet& s : meant.sets.surfaces) EXPECT_EQ(faces_of(again, s.name), s.faces.size()) << s.name;
+  EXPECT_EQ(join_equal_nodes(split.mesh), 0u);
 }
 
 TEST(Parts, TripleLinesHaveACopyForEachPart) {

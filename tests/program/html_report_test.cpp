@@ -34,6 +34,34 @@ TEST_F(HtmlReport, ShowsContourInput) {
   opens(out("R.html"));
 }
 
+TEST_F(HtmlReport, ShowsTheSolverModelOfLabelsAndOfAGivenMesh) {
+  const std::string law = write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
+      "labels": {"*": {"E_MPa": 1234, "poisson": 0.3}}, "load_case": {"fixed": [{"set": "cap_low"}], "loaded": [{"set": "cap_high", "force_N": [0, 0, -321]}]}})");
+  const std::vector<std::string> more = {"--parts", "A=1", "B=2", "C=3", "--materials", law, "--report", out("R.html"), "--report", out("R.json")};
+  const auto run = [&](std::vector<std::string> args) {
+    args.insert(args.end(), more.begin(), more.end());
+    succeeds(args);
+    const Json model = report().at("fem");
+    const std::string html = read_file(out("R.html"));
+    const std::size_t at = html.find("<section id=\"model\"");
+    ASSERT_NE(at, std::string::npos);
+    const std::string section = html.substr(at, html.find("</section>", at) - at);
+    for (const auto& set : model.at("sets")) {
+      const std::size_t row = section.find(">" + set.at("name").get<std::string>() + "</th>");
+      ASSERT_NE(row, std::string::npos) << set;
+      const std::string cells = section.substr(row, section.find("</tr>", row) - row);
+      EXPECT_NE(cells.find("data-v=\"" + std::to_string(set.at("nodes").get<int>()) + "\""), std::string::npos) << cells;
+      EXPECT_NE(cells.find("data-v=\"" + std::to_string(set.at("faces").get<int>()) + "\""), std::string::npos) << cells;
+    }
+    for (const char* text : {"A, B", "tied", "data-v=\"1234\"", "321) N"}) EXPECT_NE(section.find(text), std::string::npos) << text;
+  };
+  run({"fem", testdata("border.nii.gz"), "--edge-length", "6", "-o", out("a.vtu")});
+  run({"fem", out("a.vtu"), "-o", out("b.inp")});  // its parts have nodes of their own: they are joined, and split again
+  EXPECT_EQ(report().at("surface").at("self_intersections"), 0);
+  EXPECT_EQ(report().at("fem").at("pairs").size(), 3u);
+  opens(out("R.html"));
+}
+
 TEST_F(HtmlReport, HoldsTheFiguresOfTheJson) {
   succeeds({"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
   const Json report = this->report();

@@ -128,7 +128,9 @@ class Testdata : public ProgramTest, public ::testing::WithParamInterface<Sample
         EXPECT_TRUE(l.at("caps").at(end) == "flat" || l.at("caps").at(end) == "round");
       if (!sample.grid) continue;
       const double pieces = l.at("input_components");
-      if (!crumbs) EXPECT_EQ(l.at("components"), pieces);
+      if (!crumbs) {
+        EXPECT_EQ(l.at("components"), pieces);
+      }
       // Stitched contours keep the label of every pixel centre.
       EXPECT_NEAR(l.at("dice"), 1, r.at("surface").at("level") == "stitched" ? 1e-6 : 0.1);
     }
