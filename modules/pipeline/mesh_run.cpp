@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "interpolate/virtual_slices.h"
 #include "pipeline/complete_report.h"
@@ -32,9 +36,13 @@ class MeshRun {
     clock_.run("read", [&] { read(); });
     clock_.run("contours", [&] { make_sections(); });
     clock_.run("stitch", [&] { stitch(); });
-    clock_.run("validate", [&] { judge_stitched(); });
-    if (o_.enhance && is_sound() && !is_too_large()) enhance();
-    if (o_.target == Target::volume && is_sound()) clock_.run("volume", [&] { fill(); });
+    if (o_.enhance && !is_too_large()) {
+      enhance();
+    } else {
+      clock_.run("validate", [&] { take_stitched(judge(surface_, o_.threads)); });
+    }
+    if (o_.target == Target::volume && is_sound() && !filled_) clock_.run("volume", [&] { fill(); });
+    if (filled_) clock_.run("volume", [&] { take_filled(); });
     clock_.run("validate", [&] { judge_rest(); });
     const std::string refusal = verdict();
     if (refusal.empty() && model_ && mesh_) clock_.run("write", [&] { make_model(); });
@@ -175,6 +183,22 @@ class MeshRun {
     return true;
   }
 
+  /// What the exact checks say of a surface.
+  struct Judgement {
+    InterfaceComplex world;  // in the coordinates that will be written
+    SurfaceCheck check;
+    bool is_sound() const { return check.open_edges == 0 && check.self_intersections == 0; }
+  };
+
+  /// A surface is checked beside the stage that goes on with it, which is believed only after the check.
+  void begin_judging(const InterfaceComplex& surface) {
+    clock_.begin_beside("validate", [&] { beside_ = judge(surface, 1); }, thread_count(o_.threads) > 1);
+  }
+  Judgement finish_judging() {
+    clock_.run("validate", [&] { clock_.finish_beside(); });
+    return std::move(beside_);
+  }
+
   /// The stitched surface is kept until the enhanced one has passed the same exact checks.
   void enhance() {
     EnhanceOptions options = o_.enhancement;
@@ -187,21 +211,51 @@ class MeshRun {
       for (std::size_t k : resolve_labels(known, text)) options.label_edge_mm[known[k].number] = edge_mm;
     for (const LabelReport& row : report_.labels)
       if (row.input_volume_mm3) options.label_volume_mm3[row.label] = *row.input_volume_mm3;
-    InterfaceComplex stitched = std::move(surface_);
-    const SurfaceCheck before = *report_.surface;
+    EnhanceResult result;
+    std::exception_ptr error;
+    begin_judging(surface_);
     clock_.run("enhance", [&] {
-      EnhanceResult result = enhance_complex(stitched, options, progress_);
-      for (const std::string& w : result.warnings) warn(w);
-      surface_ = std::move(result.complex);
-      report_.surface_level = result.level;
+      try {
+        result = enhance_complex(surface_, options, progress_);
+      } catch (...) {
+        error = std::current_exception();
+      }
     });
-    clock_.run("validate", [&] { judge_surface(); });
-    if (!is_sound() || report_.surface->labels.size() != before.labels.size()) {
-      warn("the enhanced surface did not pass the exact checks (" + std::to_string(report_.surface->open_edges) + " open edges, " +
-           std::to_string(report_.surface->self_intersections) + " self-intersections): the stitched surface is used");
+    take_stitched(finish_judging());
+    if (!is_sound()) return;  // no one may enhance it
+    if (error) std::rethrow_exception(error);
+    for (const std::string& w : result.warnings) warn(w);
+    InterfaceComplex stitched = std::exchange(surface_, std::move(result.complex));
+    const SurfaceCheck before = *report_.surface;
+    report_.surface_level = result.level;
+
+    std::atomic<bool> unsound{false};
+    clock_.begin_beside(
+        "validate",
+        [&] {
+          beside_ = judge(surface_, o_.target == Target::volume ? 1 : o_.threads);
+          unsound = !accepts(beside_, before);
+        },
+        o_.target == Target::volume && thread_count(o_.threads) > 1);
+    if (o_.target == Target::volume) {
+      clock_.run("volume", [&] {
+        try {
+          fill(&unsound);
+        } catch (...) {
+          error = std::current_exception();
+        }
+      });
+    }
+    Judgement enhanced = finish_judging();
+    if (!accepts(enhanced, before)) {
+      warn("the enhanced surface did not pass the exact checks (" + std::to_string(enhanced.check.open_edges) + " open edges, " +
+           std::to_string(enhanced.check.self_intersections) + " self-intersections): the stitched surface is used");
       surface_ = std::move(stitched);
       report_.surface_level = "stitched";
-      clock_.run("validate", [&] { judge_surface(); });
+      filled_.reset();
+    } else {
+      if (error) std::rethrow_exception(error);
+      take(std::move(enhanced));
     }
     if (report_.surface_level != "enhanced" && lost_detail_.empty()) lost_detail_ = "the surface is " + report_.surface_level + ", not enhanced";
     for (const LabelSurface& b : before.labels)
@@ -211,12 +265,18 @@ class MeshRun {
                std::to_string(a.euler) + " and its pieces from " + std::to_string(b.components) + " to " + std::to_string(a.components));
   }
 
+  static bool accepts(const Judgement& enhanced, const SurfaceCheck& before) {
+    return enhanced.is_sound() && enhanced.check.labels.size() == before.labels.size();
+  }
+
   bool is_sound() const { return report_.surface->open_edges == 0 && report_.surface->self_intersections == 0; }
 
   /// The volume mesher works in stack coordinates; only what it gives is mapped to the world.
-  void fill() {
+  void fill(const std::atomic<bool>* given_up = nullptr) {
     FillOptions options = o_.fill;
     options.known_sound = true;
+    options.threads = o_.threads;
+    options.given_up = given_up;
     if (report_.surface_level == "enhanced") {  // good triangles: inner tetrahedra may be asked for quality
       if (!options.radius_edge) options.radius_edge = 1.4;
       if (!options.max_volume_mm3) options.inner_growth = 2;
@@ -225,7 +285,11 @@ class MeshRun {
       options.improve_deg = options.dihedral_deg;
     }
     refuse_too_many(estimate_tets(surface_, options));
-    FillResult result = fill_volume(surface_, options);
+    filled_ = fill_volume(surface_, options);
+  }
+
+  void take_filled() {
+    FillResult result = std::move(*filled_);
     if (!result.fallback.empty()) warn("the volume mesher fell back: " + result.fallback + "; then " + result.message);
     if (result.status == FillResult::Status::verified) {
       report_.closure = "verified";
@@ -262,19 +326,26 @@ class MeshRun {
       for (InterfaceTriangle& t : triangles) std::swap(t.v[1], t.v[2]);
   }
 
-  void judge_stitched() {
-    judge_surface();
-    report_.stitched.open_edges = report_.surface->open_edges;
-    report_.stitched.self_intersections = report_.surface->self_intersections;
+  /// Closure and intersections, on the coordinates that will be written.
+  Judgement judge(const InterfaceComplex& surface, int threads) const {
+    Judgement j;
+    j.world = surface;
+    to_world(j.world.points, j.world.triangles);
+    SurfaceCheckOptions check;
+    check.threads = threads;
+    j.check = check_surface(j.world, check);
+    return j;
   }
 
-  /// Closure and intersections, on the coordinates that will be written.
-  void judge_surface() {
-    world_surface_ = surface_;
-    to_world(world_surface_.points, world_surface_.triangles);
-    SurfaceCheckOptions check;
-    check.threads = o_.threads;
-    report_.surface = check_surface(world_surface_, check);
+  void take_stitched(Judgement j) {
+    report_.stitched.open_edges = j.check.open_edges;
+    report_.stitched.self_intersections = j.check.self_intersections;
+    take(std::move(j));
+  }
+
+  void take(Judgement j) {
+    world_surface_ = std::move(j.world);
+    report_.surface = std::move(j.check);
   }
 
   void judge_rest() {
@@ -474,6 +545,8 @@ class MeshRun {
   int axis_ = 2;
   double pixel_mm_ = 1, gap_mm_ = 1;
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
+  Judgement beside_;
+  std::optional<FillResult> filled_;
   std::optional<TetMesh> mesh_;
   HtmlPictures pictures_;
   WorldSpace world_ = WorldSpace::lps;

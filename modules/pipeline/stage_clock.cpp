@@ -17,18 +17,34 @@ double cpu_seconds() {
 }
 }  // namespace
 
+std::size_t StageClock::stage(const std::string& name) {
+  const std::size_t at = std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; }) - stages_.begin();
+  if (at == stages_.size()) stages_.push_back({name, 0, 0});
+  return at;
+}
+
 void StageClock::begin(const std::string& name) {
-  current_ = std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; }) - stages_.begin();
-  if (current_ == static_cast<std::ptrdiff_t>(stages_.size())) stages_.push_back({name, 0, 0});
+  current_ = stage(name);
   wall_ = std::chrono::steady_clock::now();
-  cpu_s_ = cpu_seconds();
+  cpu_s_ = cpu_seconds() - beside_.cpu_s();
   progress_.begin(name);
 }
 
 void StageClock::end() {
   stages_[current_].wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
-  stages_[current_].cpu_s += cpu_seconds() - cpu_s_;
+  stages_[current_].cpu_s += cpu_seconds() - beside_.cpu_s() - cpu_s_;
   progress_.end();
+}
+
+void StageClock::begin_beside(const std::string& name, std::function<void()> work, bool at_once) {
+  beside_stage_ = stage(name);
+  beside_.begin(std::move(work), at_once);
+}
+
+void StageClock::finish_beside() {
+  beside_.finish();
+  stages_[beside_stage_].cpu_s += beside_.cpu_s() - beside_cpu_s_;
+  beside_cpu_s_ = beside_.cpu_s();
 }
 
 double peak_memory_mb() {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "pipeline/beside.h"
 #include "report/run_report.h"
 
 namespace stackmesh {
@@ -22,14 +23,24 @@ class StageClock {
     return stage();
   }
 
+  /// Begins a piece of the stage `name` beside the stages that follow: its CPU time counts there, and of its wall time only
+  /// what finish_beside() waits for. One at a time.
+  void begin_beside(const std::string& name, std::function<void()> work, bool at_once);
+  /// Until it is done; throws what it threw.
+  void finish_beside();
+
  private:
+  std::size_t stage(const std::string& name);
   void begin(const std::string& name);
   void end();
   Progress& progress_;
   std::vector<StageTime>& stages_;
   std::chrono::steady_clock::time_point wall_;
   double cpu_s_ = 0;
-  std::ptrdiff_t current_ = 0;
+  std::size_t current_ = 0;
+  Beside beside_;
+  std::size_t beside_stage_ = 0;
+  double beside_cpu_s_ = 0;  // already counted
 };
 
 /// Largest resident set of this process so far, or of a child that has ended, in MB.

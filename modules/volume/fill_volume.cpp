@@ -1,12 +1,15 @@
 #include "volume/fill_volume.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <set>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "volume/improve_tets.h"
 #include "volume/label_tets.h"
 #include "volume/worker_process.h"
@@ -91,6 +94,69 @@ Compact compact(const InterfaceComplex& complex) {
     }
   }
   return out;
+}
+
+/// The triangles around some of the labels; the others become background.
+Compact part_of(const Compact& whole, const std::set<Label>& labels) {
+  Compact out;
+  std::vector<std::int32_t> number(whole.points.size(), -1);
+  const auto kept = [&](Label l) { return labels.count(l) > 0 ? l : 0; };
+  for (std::size_t i = 0; i < whole.welded.size(); ++i) {
+    InterfaceTriangle t = whole.welded[i];
+    t.below = kept(t.below), t.above = kept(t.above);
+    if (t.below == t.above) continue;
+    out.welded.push_back(t);
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t v = whole.corners[3 * i + k];
+      if (number[v] < 0) {
+        number[v] = static_cast<std::int32_t>(out.points.size());
+        out.points.push_back(whole.points[v]);
+        out.original.push_back(whole.original[v]);
+      }
+      out.corners.push_back(number[v]);
+    }
+  }
+  return out;
+}
+
+/// Two sets of labels with about as many triangle sides each, apart along the longest axis; empty when there is nothing
+/// to gain. Neighbours in different sets are no obstacle: their common triangles are kept by both.
+std::vector<std::set<Label>> halves(const Compact& whole) {
+  constexpr std::size_t kWorthIt = 10000;  // triangles
+  if (whole.welded.size() < kWorthIt) return {};
+  struct Row {
+    double sides = 0, at[3] = {0, 0, 0};
+  };
+  std::map<Label, Row> rows;
+  double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
+  for (std::size_t i = 0; i < whole.welded.size(); ++i) {
+    const InterfaceTriangle& t = whole.welded[i];
+    if (t.below == t.above) continue;
+    const Vec3& p = whole.points[whole.corners[3 * i]];
+    const double at[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
+    for (const Label l : {t.below, t.above}) {
+      if (l == 0) continue;
+      Row& row = rows[l];
+      ++row.sides;
+      for (int k = 0; k < 3; ++k) row.at[k] += at[k];
+    }
+  }
+  if (rows.size() < 2) return {};
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  std::vector<std::pair<double, Label>> order;
+  double all = 0;
+  for (const auto& [label, row] : rows) order.emplace_back(row.at[axis] / row.sides, label), all += row.sides;
+  std::sort(order.begin(), order.end());
+  double before = 0;
+  std::size_t first = 0;
+  while (before + 0.5 * rows[order[first].second].sides < 0.5 * all) before += rows[order[first++].second].sides;
+  if (std::min(before, all - before) < 0.2 * all) return {};
+  std::vector<std::set<Label>> sets(2);
+  for (std::size_t i = 0; i < order.size(); ++i) sets[i < first ? 0 : 1].insert(order[i].second);
+  return sets;
 }
 
 double median(std::vector<double>& values) {
@@ -200,7 +266,13 @@ class Filler {
     if (wants_refinement) {
       // The plain filling must still fit in the time.
       const auto budget = std::chrono::duration_cast<Clock::duration>((deadline_ - Clock::now()) * 0.6);
-      FillResult result = attempt({true, "", scale}, std::min(deadline_, Clock::now() + budget));
+      const Clock::time_point until = std::min(deadline_, Clock::now() + budget);
+      if (const std::vector<std::set<Label>> sets = halves(input_); !sets.empty()) {
+        FillResult result = attempt({true, "", scale}, until, sets);
+        if (result.status == Status::verified) return result;
+        hopeless_ = false;  // the whole says why
+      }
+      FillResult result = attempt({true, "", scale}, until);
       if (result.status == Status::verified || hopeless_) return result;
       refinement_pays = result.status != Status::timed_out;
       before = result.message;
@@ -270,34 +342,64 @@ class Filler {
 
   /// The edge length wanted at each point, for tets inside: the mean of the surface's edges there, grown. TetGen's
   /// edges come out longer than asked by the factor.
-  std::vector<double> sizes() const {
+  std::vector<double> sizes(const Compact& part) const {
     constexpr double kTetGensOwn = 0.85;
-    std::vector<double> sum(input_.points.size(), 0), count(input_.points.size(), 0);
-    for (std::size_t i = 0; i < input_.corners.size(); ++i) {
-      const std::int32_t a = input_.corners[i], b = input_.corners[i % 3 == 2 ? i - 2 : i + 1];
-      const double length = norm(input_.points[b] - input_.points[a]);
+    std::vector<double> sum(part.points.size(), 0), count(part.points.size(), 0);
+    for (std::size_t i = 0; i < part.corners.size(); ++i) {
+      const std::int32_t a = part.corners[i], b = part.corners[i % 3 == 2 ? i - 2 : i + 1];
+      const double length = norm(part.points[b] - part.points[a]);
       for (const std::int32_t v : {a, b}) sum[v] += length, count[v] += 1;
     }
     for (std::size_t p = 0; p < sum.size(); ++p) sum[p] *= kTetGensOwn * *options_.inner_growth / count[p];
     return sum;
   }
 
-  Reply call_worker(const std::string& switches, const Call& call, Clock::time_point deadline) {
+  Reply call_worker(const std::string& switches, const Call& call, const Compact& part, Clock::time_point deadline) const {
     std::vector<Vec3> moved;
     const bool as_is = call.z_scale == 1 && call.turns == 0;
     if (!as_is) {
-      moved = input_.points;
+      moved = part.points;
       for (Vec3& p : moved) p = turned({p.x, p.y, p.z * call.z_scale}, call.turns);
     }
     std::vector<double> edges;
-    if (sized(call)) edges = sizes();
-    return worker::run(program_, {switches, as_is ? &input_.points : &moved, edges.empty() ? nullptr : &edges, &input_.corners}, deadline);
+    if (sized(call)) edges = sizes(part);
+    return worker::run(program_, {switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges, &part.corners}, deadline, options_.given_up);
   }
 
   FillResult attempt(const Call& call, Clock::time_point deadline) {
     const std::string name = describe(call, switches(call));
+    TetMesh mesh;
+    FillResult failed = fill(call, input_, deadline, name, mesh);
+    return failed.message.empty() ? assemble(std::move(mesh), name) : failed;
+  }
+
+  /// The labels of each set on their own, side by side.
+  FillResult attempt(const Call& call, Clock::time_point deadline, const std::vector<std::set<Label>>& sets) {
+    const std::string name = describe(call, switches(call)) + " in " + std::to_string(sets.size()) + " parts";
+    std::vector<TetMesh> meshes(sets.size());
+    std::vector<FillResult> failed(sets.size());
+    parallel_for(sets.size(), options_.threads, [&](std::size_t i) { failed[i] = fill(call, part_of(input_, sets[i]), deadline, name, meshes[i]); });
+    for (FillResult& f : failed)
+      if (!f.message.empty()) return std::move(f);
+    TetMesh mesh = std::move(meshes[0]);
+    for (std::size_t i = 1; i < meshes.size(); ++i) {
+      const auto own = static_cast<std::int32_t>(complex_.points.size()), offset = static_cast<std::int32_t>(mesh.points.size()) - own;
+      mesh.points.insert(mesh.points.end(), meshes[i].points.begin() + own, meshes[i].points.end());
+      for (std::array<std::int32_t, 4> t : meshes[i].tets) {
+        for (std::int32_t& v : t)
+          if (v >= own) v += offset;
+        mesh.tets.push_back(t);
+      }
+      mesh.labels.insert(mesh.labels.end(), meshes[i].labels.begin(), meshes[i].labels.end());
+    }
+    mesh.faces = input_.welded;
+    return assemble(std::move(mesh), name);
+  }
+
+  /// Tets of a part's labels, checked against its triangles; the complex's points come first. A failure has a message.
+  FillResult fill(const Call& call, const Compact& part, Clock::time_point deadline, const std::string& name, TetMesh& mesh) {
     const auto start = Clock::now();
-    Reply reply = call_worker(switches(call) + "Jn", call, deadline);
+    Reply reply = call_worker(switches(call) + "Jn", call, part, deadline);
     switch (reply.kind) {
       case Reply::Kind::not_a_worker:
         hopeless_ = true;
@@ -320,26 +422,16 @@ class Filler {
         break;
     }
     if (reply.tets.empty()) return failure(Status::empty, name + " succeeded without a single tetrahedron");
-    return assemble(std::move(reply), call, name);
-  }
-
-  static std::string reason(const Reply& reply) {
-    const bool ours = reply.text.compare(0, 10, "the worker") == 0;
-    return ours ? ": " + reply.text : " without saying why";
-  }
-
-  FillResult assemble(Reply reply, const Call& call, const std::string& name) {
-    TetMesh mesh;
     mesh.points = complex_.points;
-    mesh.faces = input_.welded;
-    const auto known = static_cast<std::int32_t>(input_.points.size());
+    mesh.faces = part.welded;
+    const auto known = static_cast<std::int32_t>(part.points.size());
     const auto offset = static_cast<std::int32_t>(complex_.points.size()) - known;
     for (const Vec3& added : reply.added_points) {
       const Vec3 p = turned(added, (3 - call.turns) % 3);
       mesh.points.push_back({p.x, p.y, p.z / call.z_scale});
     }
     for (std::int32_t& v : reply.tets)
-      if (v >= 0) v = v < known ? input_.original[v] : v + offset;
+      if (v >= 0) v = v < known ? part.original[v] : v + offset;
     volume::Finding finding = volume::label_tets({std::move(reply.tets), std::move(reply.neighbours)}, mesh);
     if (!finding.message.empty()) {
       hopeless_ = finding.of_input;
@@ -347,13 +439,23 @@ class Filler {
     }
     if (mesh.tets.empty()) return failure(Status::empty, name + " left no tetrahedron of any label");
     drop_unused(mesh);
+    return {};
+  }
+
+  static std::string reason(const Reply& reply) {
+    const bool ours = reply.text.compare(0, 10, "the worker") == 0;
+    return ours ? ": " + reply.text : " without saying why";
+  }
+
+  /// Improves the tets and compares each label's volume with that of its surface.
+  FillResult assemble(TetMesh mesh, const std::string& name) const {
     std::string improved;
     if (options_.improve_deg) {
       const std::size_t before = mesh.tets.size();
       volume::ImproveOptions improve;
       improve.goal_deg = *options_.improve_deg;
       volume::ImproveCounts counts;
-      finding = volume::label_tets(volume::improve_tets(mesh, complex_.points.size(), improve, counts), mesh);
+      const volume::Finding finding = volume::label_tets(volume::improve_tets(mesh, complex_.points.size(), improve, counts), mesh);
       if (!finding.message.empty()) fail_internal("the improved tets are invalid: " + finding.message, name);
       improved = ", improved from " + std::to_string(before);
     }
@@ -408,7 +510,7 @@ class Filler {
 
   /// Asks TetGen (-d) for the triangles that intersect; true when it found some, now in `refusal`.
   bool search(FillResult& refusal) {
-    const Reply reply = call_worker("pdMJ", Call{}, deadline_);
+    const Reply reply = call_worker("pdMJ", Call{}, input_, deadline_);
     std::set<std::int32_t> found;
     if (reply.kind == Reply::Kind::done) {
       const auto count = static_cast<std::int32_t>(complex_.triangles.size());
@@ -456,7 +558,7 @@ class Filler {
   worker::Program program_;
   Clock::time_point deadline_;
   Compact input_;
-  bool hopeless_ = false;  // no worker to be had, or an invalid complex: trying again is no use
+  std::atomic<bool> hopeless_{false};  // no worker to be had, or an invalid complex: trying again is no use
 };
 
 }  // namespace

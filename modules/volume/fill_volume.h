@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,7 +18,9 @@ struct FillOptions {
   std::optional<double> dihedral_deg;  ///< smallest dihedral angle that TetGen refines for, degrees; a target
   std::optional<double> inner_growth;  ///< edges inside are about this times those of the nearby surface; a target
   std::optional<double> improve_deg;   ///< then tets with a dihedral angle below it are improved; unset: as TetGen gives them
+  int threads = 0;                     ///< 0: all of the machine; the result does not depend on it
   double timeout_s = 600;              ///< of all worker runs together, seconds
+  const std::atomic<bool>* given_up = nullptr;  ///< soon after it becomes true the filling ends, as timed_out; unset: never
   bool known_sound = false;            ///< the complex was shown to have no intersections: after a refusal TetGen
                                        ///< is not asked for them (that search is slow)
   std::string worker_path;             ///< program that answers the worker call; empty: this very program

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -36,8 +37,8 @@ struct Reply {
   std::vector<std::int32_t> tets, neighbours, faces;
 };
 
-/// Starts the worker, sends the request, and waits for its answer until the deadline. The worker is gone and
+/// Starts the worker, sends the request, and waits for its answer until the deadline, or until `given_up`. The worker is gone and
 /// reaped when this returns.
-Reply run(const Program& program, const Request& request, Clock::time_point deadline);
+Reply run(const Program& program, const Request& request, Clock::time_point deadline, const std::atomic<bool>* given_up = nullptr);
 
 }  // namespace stackmesh::worker
