@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "enhance/tick.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
 #include "enhance/sizing.h"
@@ -40,15 +41,17 @@ class Enhancement {
       result_.complex = stitched_;
       return std::move(result_);
     }
+    tick("before");
     ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm);
     volumes_ = label_volumes(mesh);
     for (auto& [label, v] : volumes_) {
       const auto wanted = o_.label_volume_mm3.find(label);
       if (wanted != o_.label_volume_mm3.end()) v = wanted->second;
     }
-    shell_sizes(mesh, &shells_);
+    shell_sizes(mesh, &shells_);tick("build, shells");
     result_.complex = stitched_;
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
+    tick("ridges");
     if (o_.smooth_passes > 0 && !step("smoothed", mesh, [&] { smooth_mesh(mesh); }))
       return std::move(result_);
     progress_.advance(0.25);
@@ -84,9 +87,10 @@ class Enhancement {
   template <class Body>
   bool step(const char* level, ComplexMesh& mesh, Body body) {
     body();
-    std::size_t shells = 0;
+    tick("body");std::size_t shells = 0;
     shell_sizes(mesh, &shells);
     const std::size_t contacts = count_contacts(mesh, o_.threads);
+    tick("check");
     if (contacts > 0 || shells != shells_) {
       warn("the " + std::string(level) + " surface was given up for the " + result_.level + " one: " +
            (contacts > 0
@@ -113,7 +117,7 @@ class Enhancement {
     for (std::size_t v = 0; v < thin.size(); ++v)
       s.share.push_back(
           static_cast<float>(std::min({1.0, thin[v] / (1.5 * o_.pixel_mm), shell[v] / (4 * o_.pixel_mm)})));
-    const SmoothingResult r = smooth(mesh, s);
+    tick("thin");const SmoothingResult r = smooth(mesh, s);tick("smooth");
     result_.counts.smoothed = r.moved;
     result_.counts.held_back = r.held_back;
     restore_volumes(mesh, volumes_, 0.2 * o_.pixel_mm, s.keep, o_.threads);
@@ -199,12 +203,12 @@ class Enhancement {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
     if (o_.target_tets && !o_.edge_length_mm) coarsen(mesh, size);
-    const double triangles = expected_triangles(mesh, size);
+    tick("sizes");const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
     result_.expected_tets = static_cast<std::size_t>(kTetsPerTriangle * triangles);
     refuse_giants(triangles);
-    const Reference reference(mesh, 0.6 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)));
-    RemeshOptions r;
+    const Reference reference(mesh, 0.6 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
+    tick("reference");RemeshOptions r;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
     // An edge length that was asked for gives way only where something would be cut off.
@@ -219,7 +223,7 @@ class Enhancement {
     result_.counts.refused_contact = c.refused_contact;
     result_.counts.refused_angle = c.refused_angle;
     result_.counts.refused_clearance = c.refused_clearance;
-    MoveLimits keep;
+    tick("remesh");MoveLimits keep;
     keep.clearance_mm = 0.02 * std::min(o_.pixel_mm, o_.gap_mm);
     keep.sheet_angle_deg = o_.sheet_angle_deg;
     keep.corner_angle_deg = 25;

@@ -176,7 +176,7 @@ Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
   } else if (mesh_.flat[v]) {
     to = p;
   } else {
-    const auto foot = reference_.nearest(p, mesh_.triangles[mesh_.star[v][0]].patch, reach, hints[v]);
+    const auto foot = reference_.nearest(p, mesh_.triangles[mesh_.star[v][0]].patch, reach, hints[v], 0.5 * reach);
     if (foot) {
       to = foot->point;
       hints[v] = foot->face;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/parallel.h"
 #include "enhance/contact.h"
 
 namespace stackmesh {
@@ -58,32 +59,45 @@ std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std:
   return key;
 }
 
-Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm) {
-  for (const MeshTriangle& t : mesh.triangles) {
-    if (t.patch < 0) continue;
-    Face f;
+Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads) : cell_mm_(cell_mm) {
+  std::vector<std::int32_t> number(mesh.triangles.size(), -1);
+  for (std::size_t t = 0; t < number.size(); ++t)
+    if (mesh.triangles[t].patch >= 0) {
+      number[t] = static_cast<std::int32_t>(faces_.size());
+      Face f;
+      f.triangle = static_cast<std::int32_t>(t);
+      faces_.push_back(f);
+    }
+  normals_.resize(faces_.size());
+  balls_.resize(faces_.size());
+  for_each_index(faces_.size(), threads, [&](std::size_t n) {
+    Face& f = faces_[n];
+    const MeshTriangle& t = mesh.triangles[f.triangle];
     f.patch = t.patch;
-    f.triangle = static_cast<std::int32_t>(&t - mesh.triangles.data());
     const Vec3 area = mesh.area_vector(t.v);
     const double size = norm(area);
     for (int k = 0; k < 3; ++k) {
       f.p[k] = mesh.points[t.v[k]];
+      f.next[k] = -1;
       Vec3 sum;
+      int beyond = 0;
       for (std::int32_t o : mesh.star[t.v[k]]) {
-        if (mesh.triangles[o].patch != t.patch) continue;
-        const Vec3 other = mesh.area_vector(mesh.triangles[o].v);
-        if (dot(other, area) > 0.5 * size * norm(other)) sum = sum + other;
+        const MeshTriangle& other = mesh.triangles[o];
+        if (other.patch != t.patch) continue;
+        const Vec3 a = mesh.area_vector(other.v);
+        if (dot(a, area) > 0.5 * size * norm(a)) sum = sum + a;
+        const std::int32_t w = t.v[(k + 1) % 3];
+        if (o != f.triangle && (other.v[0] == w || other.v[1] == w || other.v[2] == w))
+          f.next[k] = beyond++ == 0 ? number[o] : -1;
       }
-      const double l = norm(sum);
-      f.n[k] = l > 0 ? (1 / l) * sum : Vec3{};
+      const double l = norm(sum), scale = l > 0 ? 1 / l : 0;
+      normals_[n][k] = {static_cast<float>(scale * sum.x), static_cast<float>(scale * sum.y), static_cast<float>(scale * sum.z)};
     }
     const Vec3 c = (1 / 3.0) * (f.p[0] + f.p[1] + f.p[2]);
     const double r = std::max({norm(f.p[0] - c), norm(f.p[1] - c), norm(f.p[2] - c)});
-    balls_.push_back({static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
-                      static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))),
-                      t.patch});
-    faces_.push_back(f);
-  }
+    balls_[n] = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
+                 static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))), t.patch};
+  });
   for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
     for (std::int32_t b : mesh.curve[a])
       if (a < b) segments_.push_back({mesh.points[a], mesh.points[b], curve_key(mesh, a, b)});
@@ -93,26 +107,58 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm) : cell_mm_(cell_mm
   });
 }
 
-std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm,
-                                                  std::int32_t hint) const {
-  double best = std::numeric_limits<double>::infinity();
-  double near = reach_mm;
-  std::int32_t found = -1;
-  Vec3 foot;
-  std::array<std::int32_t, 8> tested;  // a long triangle lies in many cells
-  tested.fill(-1);
-  unsigned turn = 0;
+/// From face to face as long as one beyond a side is no further; so all round a corner that is nearest.
+void Reference::walk(const Vec3& p, std::int32_t hint, Candidate& best) const {
+  constexpr int kMost = 96;
+  std::array<std::int32_t, kMost> seen;
+  std::array<double, kMost> squared;
+  int count = 0;
   const auto test = [&](std::int32_t n) {
     const Face& f = faces_[n];
     const Vec3 q = nearest_on_triangle(p, f.p[0], f.p[1], f.p[2]), d = p - q;
     const double l = dot(d, d);
-    if (l > best || (l == best && n > found)) return;
-    best = l;
-    near = std::min(near, std::sqrt(best));
-    found = n;
-    foot = q;
+    seen[count] = n;
+    squared[count++] = l;
+    if (l < best.squared || (l == best.squared && n < best.face)) best = {l, n, q};
   };
-  if (hint >= 0 && faces_[hint].patch == patch) test(hint);
+  test(hint);
+  for (int i = 0; i < count; ++i) {
+    if (squared[i] > best.squared * (1 + 1e-12)) continue;
+    for (std::int32_t n : faces_[seen[i]].next)
+      if (n >= 0 && count < kMost && std::find(seen.begin(), seen.begin() + count, n) == seen.begin() + count) test(n);
+  }
+}
+
+Reference::Foot Reference::foot_at(const Candidate& c) const {
+  const Face& face = faces_[c.face];
+  const double distance = std::sqrt(c.squared);
+  const Vec3 n = cross(face.p[1] - face.p[0], face.p[2] - face.p[0]);
+  const double size = dot(n, n);
+  if (!(size > 0)) return Foot{c.point, {}, c.face, face.triangle, distance};
+  Vec3 bulged, normal;
+  for (int k = 0; k < 3; ++k) {
+    const double w = dot(n, cross(face.p[(k + 1) % 3] - c.point, face.p[(k + 2) % 3] - c.point)) / size;
+    const auto& m = normals_[c.face][k];
+    const Vec3 at{m[0], m[1], m[2]};
+    bulged = bulged + w * (c.point - dot(c.point - face.p[k], at) * at);
+    normal = normal + w * at;
+  }
+  const double l = norm(normal);
+  return Foot{c.point + 0.6 * (bulged - c.point), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, c.face, face.triangle,
+              distance};
+}
+
+std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint,
+                                                  double trust_mm) const {
+  Candidate best;
+  if (hint >= 0 && faces_[hint].patch == patch) {
+    walk(p, hint, best);
+    if (best.squared <= trust_mm * trust_mm) return foot_at(best);
+  }
+  double near = std::min(reach_mm, std::sqrt(best.squared));
+  std::array<std::int32_t, 8> tested;  // a long triangle lies in many cells
+  tested.fill(-1);
+  unsigned turn = 0;
   for (double r = std::min(0.5 * cell_mm_, reach_mm);; r = std::min(2 * r, reach_mm)) {
     r = std::min(r, near);
     face_cells_.around(p, r, [&](std::int32_t n) {
@@ -123,24 +169,17 @@ std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t pa
       for (std::int32_t t : tested)
         if (t == n) return;
       tested[turn++ % tested.size()] = n;
-      test(n);
+      const Face& f = faces_[n];
+      const Vec3 q = nearest_on_triangle(p, f.p[0], f.p[1], f.p[2]), d = p - q;
+      const double l = dot(d, d);
+      if (l > best.squared || (l == best.squared && n >= best.face)) return;
+      best = {l, n, q};
+      near = std::min(near, std::sqrt(l));
     });
-    if (best <= r * r * (1 + 1e-12)) break;
+    if (best.squared <= r * r * (1 + 1e-12)) break;
     if (r >= reach_mm) return std::nullopt;
   }
-  const Face* face = &faces_[found];
-  const Vec3 n = cross(face->p[1] - face->p[0], face->p[2] - face->p[0]);
-  const double size = dot(n, n);
-  if (!(size > 0)) return Foot{foot, {}, found, face->triangle, near};
-  Vec3 bulged, normal;
-  for (int k = 0; k < 3; ++k) {
-    const double w = dot(n, cross(face->p[(k + 1) % 3] - foot, face->p[(k + 2) % 3] - foot)) / size;
-    bulged = bulged + w * (foot - dot(foot - face->p[k], face->n[k]) * face->n[k]);
-    normal = normal + w * face->n[k];
-  }
-  const double l = norm(normal);
-  return Foot{foot + 0.6 * (bulged - foot), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, found, face->triangle,
-              near};
+  return foot_at(best);
 }
 
 std::optional<Vec3> Reference::nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace stackmesh {
 /// smooth to the eye and nearly G1.
 class Reference {
  public:
-  Reference(const ComplexMesh& mesh, double cell_mm);
+  Reference(const ComplexMesh& mesh, double cell_mm, int threads);
 
   struct Foot {
     Vec3 point, normal;
@@ -22,9 +23,10 @@ class Reference {
     std::int32_t triangle = -1;  ///< of the mesh, as it was numbered at construction
     double distance_mm = 0;      ///< to the plain triangle
   };
-  /// Nearest point on triangles of that patch, not further than `reach_mm`. `hint`, the face of a foot nearby or -1, makes
-  /// the search short.
-  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint = -1) const;
+  /// Nearest point on triangles of that patch, not further than `reach_mm`. From `hint`, the face of a foot nearby or -1,
+  /// the search walks downhill over neighbours; a foot found so within `trust_mm` is taken (on a folded surface another
+  /// sheet may be nearer), else all faces near p are searched.
+  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint, double trust_mm) const;
   /// Nearest point on curves between the same patches as the curve of `key`.
   std::optional<Vec3> nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const;
 
@@ -53,7 +55,8 @@ class Reference {
     void around(const Vec3& p, double r, Visit visit) const;
   };
   struct Face {
-    std::array<Vec3, 3> p, n;  ///< corners and their normals
+    std::array<Vec3, 3> p;
+    std::array<std::int32_t, 3> next;  ///< face of the same patch beyond the side from corner k to k + 1, or -1
     std::int32_t patch, triangle;
   };
   /// What rules a face out at a glance: its patch and the ball round it.
@@ -65,8 +68,18 @@ class Reference {
     Vec3 a, b;
     std::uint64_t key;
   };
+  /// A candidate for the nearest point.
+  struct Candidate {
+    double squared = std::numeric_limits<double>::infinity();
+    std::int32_t face = -1;
+    Vec3 point;
+  };
+  void walk(const Vec3& p, std::int32_t hint, Candidate& best) const;
+  Foot foot_at(const Candidate& c) const;
+
   double cell_mm_;
   std::vector<Face> faces_;
+  std::vector<std::array<std::array<float, 3>, 3>> normals_;  ///< of each face's corners
   std::vector<Ball> balls_;
   std::vector<Segment> segments_;
   Cells face_cells_, segment_cells_;

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "enhance/blocks.h"
+#include "enhance/tick.h"
 #include "enhance/local_operations.h"
 #include "enhance/sizing.h"
 #include "enhance/smoothing.h"
@@ -23,11 +24,16 @@ class Remesher {
       : mesh_(mesh), size_(size), reference_(reference), o_(options), ops_(mesh, size, hints, reference, options) {}
 
   void round(int number) {
+    regrid();if(number==0)tick("regrid");
+    split_long();if(number==0)tick("split");
+    collapse_short(number == 0 ? 8 : 3, (number == 0 ? 8 : 15) * kDegree);if(number==0)tick("collapse");
+    flip_all(2 * kDegree, number + 1 < o_.rounds, 2);if(number==0)tick("flip");
+    relocate_all(number + 2 < o_.rounds ? 1 : 2);if(number==0)tick("relocate");
+  }
+
+  void coarsen() {
     regrid();
-    split_long();
-    collapse_short(number == 0 ? 8 : 3, (number == 0 ? 8 : 15) * kDegree);
-    flip_all(2 * kDegree, number + 1 < o_.rounds, 2);
-    relocate_all(number + 2 < o_.rounds ? 1 : 2);
+    collapse_short(4, 8 * kDegree);
   }
 
   void fit(int passes) {
@@ -186,7 +192,7 @@ class Remesher {
           const auto& w = kAt[i];
           Vec3 p;
           for (int k = 0; k < 3; ++k) p = p + w[k] * mesh_.points[m.v[k]];
-          const auto foot = reference_.nearest(p, m.patch, reach, last_[t][i]);
+          const auto foot = reference_.nearest(p, m.patch, reach, last_[t][i] >= 0 ? last_[t][i] : ops_.hints[m.v[i]], 0.3 * reach);
           if (!foot) continue;
           last_[t][i] = foot->face;
           const double d = dot(foot->point - p, (1 / l) * a);
@@ -271,14 +277,14 @@ void shorten_where_off(const ComplexMesh& mesh, std::vector<double>& size, const
     longest = std::max(longest, s);
     sum += s;
   }
-  const Reference now(mesh, 0.5 * sum / static_cast<double>(size.size()));
+  const Reference now(mesh, 0.5 * sum / static_cast<double>(size.size()), o.threads);
   std::vector<float> factor(mesh.triangles.size(), 1);
   std::vector<std::pair<std::int32_t, float>> off(reference.face_count(), {-1, 1.0f});
   constexpr std::size_t kChunk = 512;
   parallel_for((off.size() + kChunk - 1) / kChunk, o.threads, [&](std::size_t chunk) {
     std::int32_t hint = -1;
     for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); ++f) {
-      const auto foot = now.nearest(reference.centre(f), reference.patch(f), longest, hint);
+      const auto foot = now.nearest(reference.centre(f), reference.patch(f), longest, hint, o.deviation_mm);
       if (foot) hint = foot->face;
       if (foot && foot->distance_mm > o.deviation_mm)
         off[f] = {foot->triangle, static_cast<float>(std::max(0.5, std::sqrt(o.deviation_mm / foot->distance_mm)))};
@@ -313,8 +319,10 @@ void add(RemeshCounts& sum, const RemeshCounts& c) {
 RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
                     const RemeshOptions& options, Progress& progress) {
   RemeshCounts counts;
+  // The mesh still is the reference, whose faces are numbered as the triangles that are alive.
   std::vector<std::int32_t> hints(mesh.points.size(), -1);
   mesh.compact(size, hints);
+  for (std::size_t v = 0; v < hints.size(); ++v) hints[v] = mesh.star[v].front();
   // Blocks are worked on at the same time; each phase has their sides elsewhere, so that what was frozen has its turn.
   int phase = 0;
   const auto in_blocks = [&](bool whole, auto work) {
@@ -342,18 +350,19 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
     for (const RemeshCounts& c : each) add(counts, c);
     join_blocks(mesh, size, hints, blocks);
   };
+  for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });tick("coarsen");
   for (int round = 0; round < options.rounds; ++round) {
     // The first round works on the stitched needles: sides of blocks among them would leave needles behind.
     in_blocks(round == 0, [&](Remesher& r) { r.round(round); });
-    if (options.deviation_mm > 0 && round + 1 < options.rounds) shorten_where_off(mesh, size, reference, options);
-    progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
+    tick("round");if (options.deviation_mm > 0 && round + 1 < options.rounds) shorten_where_off(mesh, size, reference, options);
+    tick("shorten");progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
   }
   in_blocks(false, [&](Remesher& r) { r.fit(options.fit_passes / 2); });
-  in_blocks(false, [&](Remesher& r) {
+  tick("fit");in_blocks(false, [&](Remesher& r) {
     r.fit(options.fit_passes - options.fit_passes / 2);
     r.finish(options.finish_sweeps);
   });
-  in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });
+  tick("fit finish");in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });tick("finish");
   progress.advance(0.9);
   return counts;
 }

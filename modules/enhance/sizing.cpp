@@ -11,17 +11,8 @@
 namespace stackmesh {
 namespace {
 
-constexpr std::size_t kChunk = 1024;
 constexpr double kAcross = 3;       // edges of a thin wall are at most this many times as long as it is thick
 constexpr double kLossShare = 0.1;  // of a label's volume that chords may cut off, before the fit gives it back
-
-template <class Body>
-void for_range(std::size_t count, int threads, Body body) {
-  parallel_for((count + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
-    for (std::size_t v = chunk * kChunk; v < std::min(count, (chunk + 1) * kChunk); ++v)
-      body(static_cast<std::int32_t>(v));
-  });
-}
 
 Vec3 unit(const Vec3& a) {
   const double l = norm(a);
@@ -44,7 +35,7 @@ class Sizing {
   void asked() {
     size_.assign(mesh_.points.size(), 0);
     fixed_.assign(mesh_.points.size(), 0);
-    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+    for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       double s = 1e300, most = 1e300;
       for (std::int32_t t : mesh_.star[v]) {
         const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
@@ -66,14 +57,14 @@ class Sizing {
     const std::size_t n = mesh_.points.size();
     std::vector<Vec3> normal(n), next(n);
     std::vector<double> bend(n, 0), smooth(n, 0);
-    for_range(n, o_.threads, [&](std::int32_t v) {
+    for_each_index(n, o_.threads, [&](std::int32_t v) {
       Vec3 sum;
       if (mesh_.curve[v].empty())
         for (std::int32_t t : mesh_.star[v]) sum = sum + mesh_.area_vector(mesh_.triangles[t].v);
       normal[v] = unit(sum);
     });
     const auto averaged = [&](auto& from, auto& to, auto share) {
-      for_range(n, o_.threads, [&](std::int32_t v) {
+      for_each_index(n, o_.threads, [&](std::int32_t v) {
         to[v] = from[v];
         if (!mesh_.curve[v].empty()) return;
         for (std::int32_t t : mesh_.star[v])
@@ -84,9 +75,9 @@ class Sizing {
     };
     for (int pass = 0; pass < 3; ++pass) {
       averaged(normal, next, 0.5);
-      for_range(n, o_.threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
+      for_each_index(n, o_.threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
     }
-    for_range(n, o_.threads, [&](std::int32_t v) {
+    for_each_index(n, o_.threads, [&](std::int32_t v) {
       if (!mesh_.curve[v].empty()) {
         if (mesh_.curve[v].size() != 2) return;
         const Vec3 a = mesh_.points[mesh_.curve[v][0]] - mesh_.points[v],
@@ -103,7 +94,7 @@ class Sizing {
           if (l > 0) bend[v] = std::max(bend[v], std::abs(dot(normal[w] - normal[v], d)) / l);
         }
     });
-    for_range(n, o_.threads, [&](std::int32_t v) {  // mean over the neighbours: one odd edge does not decide
+    for_each_index(n, o_.threads, [&](std::int32_t v) {  // mean over the neighbours: one odd edge does not decide
       double sum = bend[v], count = 1;
       for (std::int32_t t : mesh_.star[v])
         for (std::int32_t w : mesh_.triangles[t].v)
@@ -115,7 +106,7 @@ class Sizing {
     });
     bend_ = std::move(smooth);
     if (o_.edge_length_mm) return;
-    for_range(n, o_.threads, [&](std::int32_t v) {
+    for_each_index(n, o_.threads, [&](std::int32_t v) {
       if (!fixed_[v])
         size_[v] = std::clamp(chord(v, o_.deviation_mm), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
@@ -139,7 +130,7 @@ class Sizing {
     const double reach = mean / static_cast<double>(count);
     const std::vector<double> thin = wall_thickness(mesh_, reach, o_.threads);
     const std::vector<double> shell = shell_sizes(mesh_);
-    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+    for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       const double least = std::min(o_.edge_min_mm, size_[v]);
       if (thin[v] < reach) size_[v] = std::clamp(kAcross * thin[v], least, size_[v]);
       size_[v] = std::min(size_[v], 0.5 * shell[v]);
@@ -187,7 +178,7 @@ class Sizing {
         }
       if (!any) break;
     }
-    for_range(size_.size(), o_.threads, [&](std::int32_t v) {
+    for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       double least = 1;
       for (std::int32_t t : mesh_.star[v]) {
         const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
@@ -219,7 +210,7 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
   TriangleGrid grid;
   grid.build(mesh, mesh.points, std::max(0.5 * reach_mm, 1.5 * sum / std::max(count, 1.0)));
   std::vector<double> thin(mesh.points.size(), std::numeric_limits<double>::infinity());
-  for_range(thin.size(), threads, [&](std::int32_t v) {
+  for_each_index(thin.size(), threads, [&](std::int32_t v) {
     if (mesh.star[v].empty() || !mesh.curve[v].empty() || mesh.pinned[v]) return;
     Vec3 n;
     for (std::int32_t t : mesh.star[v]) n = n + mesh.area_vector(mesh.triangles[t].v);

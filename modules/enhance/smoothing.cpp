@@ -9,15 +9,6 @@
 namespace stackmesh {
 namespace {
 
-constexpr std::size_t kChunk = 2048;
-
-template <class Body>
-void for_vertices(std::size_t count, int threads, Body body) {
-  parallel_for((count + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
-    for (std::size_t v = chunk * kChunk; v < std::min(count, (chunk + 1) * kChunk); ++v) body(v);
-  });
-}
-
 /// Whom each vertex averages over: its neighbours, on a curve those along it, none for a fixed point.
 struct Neighbours {
   std::vector<std::size_t> first;
@@ -65,22 +56,22 @@ std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOption
   for (int pass = 0; pass < o.passes; ++pass) {
     if (taubin) {
       for (double factor : {o.taubin_lambda, o.taubin_mu}) {
-        for_vertices(n, o.threads, [&](std::size_t v) {
+        for_each_index(n, o.threads, [&](std::size_t v) {
           if (around.moves(v)) q[v] = p[v] + factor * (around.mean(p, v) - p[v]);
         });
         std::swap(p, q);
       }
-      for_vertices(n, o.threads, [&](std::size_t v) {
+      for_each_index(n, o.threads, [&](std::size_t v) {
         if (around.moves(v)) p[v] = limited(v, p[v]);
       });
       continue;
     }
-    for_vertices(n, o.threads, [&](std::size_t v) {
+    for_each_index(n, o.threads, [&](std::size_t v) {
       if (!around.moves(v)) return;
       q[v] = around.mean(p, v);
       b[v] = q[v] - (o.alpha * origin[v] + (1 - o.alpha) * p[v]);
     });
-    for_vertices(n, o.threads, [&](std::size_t v) {
+    for_each_index(n, o.threads, [&](std::size_t v) {
       if (around.moves(v)) p[v] = limited(v, q[v] - (o.beta * b[v] + (1 - o.beta) * around.mean(b, v)));
     });
     q = p;
