@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "base/parallel.h"
+
 namespace stackmesh {
 namespace {
 
@@ -23,14 +25,12 @@ bool runs(const std::array<std::int32_t, 3>& v, std::int32_t a, std::int32_t b) 
   return (v[0] == a && v[1] == b) || (v[1] == a && v[2] == b) || (v[2] == a && v[0] == b);
 }
 
-template <class T>
-void drop(std::vector<T>& list, T x) {
+void drop(ShortList& list, std::int32_t x) {
   const auto it = std::find(list.begin(), list.end(), x);
   if (it != list.end()) list.erase(it);
 }
 
-template <class T>
-bool has(const std::vector<T>& list, T x) {
+bool has(const ShortList& list, std::int32_t x) {
   return std::find(list.begin(), list.end(), x) != list.end();
 }
 
@@ -50,7 +50,7 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::atan2(twice, d);
 }
 
-ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2) : points(complex.points) {
+ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads) : points(complex.points) {
   std::map<std::pair<Label, Label>, std::int32_t> numbers;
   for (const InterfaceTriangle& t : complex.triangles) numbers[std::minmax(t.below, t.above)] = 0;
   for (auto& [pair, n] : numbers) {
@@ -71,8 +71,8 @@ ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2) :
     triangles.push_back(m);
   }
   mark_caps(cap_area_mm2);
-  find_curves();
-  find_pinned();
+  find_curves(threads);
+  find_pinned(threads);
 }
 
 void ComplexMesh::mark_caps(double cap_area_mm2) {
@@ -107,21 +107,24 @@ void ComplexMesh::mark_caps(double cap_area_mm2) {
   }
 }
 
-void ComplexMesh::find_curves() {
-  std::vector<std::int32_t> around;
-  for (const auto& [a, b] : edges()) {
-    edge_triangles(a, b, around);
-    const bool regular = around.size() == 2 && triangles[around[0]].patch == triangles[around[1]].patch &&
-                         runs(triangles[around[0]].v, a, b) != runs(triangles[around[1]].v, a, b);
-    if (regular) continue;
-    curve[a].push_back(b);
-    curve[b].push_back(a);
-  }
+void ComplexMesh::find_curves(int threads) {
+  for_each_index(points.size(), threads, [&](std::size_t n) {
+    const auto v = static_cast<std::int32_t>(n);
+    std::vector<std::int32_t> near, around;
+    neighbours(v, near);
+    for (std::int32_t w : near) {
+      edge_triangles(v, w, around);
+      const bool regular = around.size() == 2 && triangles[around[0]].patch == triangles[around[1]].patch &&
+                           runs(triangles[around[0]].v, v, w) != runs(triangles[around[1]].v, v, w);
+      if (!regular) curve[v].push_back(w);
+    }
+  });
 }
 
-void ComplexMesh::find_pinned() {
-  for (std::size_t v = 0; v < points.size(); ++v)
+void ComplexMesh::find_pinned(int threads) {
+  for_each_index(points.size(), threads, [&](std::size_t v) {
     pinned[v] = !star[v].empty() && is_pinched(static_cast<std::int32_t>(v));
+  });
 }
 
 /// A free vertex has one closed fan; one on a curve has fans that all run from one curve edge to the other.
@@ -195,16 +198,8 @@ void ComplexMesh::fans(std::int32_t v, std::vector<std::int32_t>& out) const {
 std::vector<std::array<std::int32_t, 2>> ComplexMesh::edges() const {
   std::vector<std::array<std::int32_t, 2>> out;
   out.reserve(triangles.size() * 3 / 2);
-  std::vector<std::int32_t> around;
-  for (std::int32_t v = 0; v < static_cast<std::int32_t>(points.size()); ++v) {
-    around.clear();
-    for (std::int32_t t : star[v])
-      for (std::int32_t w : triangles[t].v)
-        if (w > v) around.push_back(w);
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    for (std::int32_t w : around) out.push_back({v, w});
-  }
+  for (std::int32_t a = 0; a < static_cast<std::int32_t>(points.size()); ++a)
+    edges_from(a, [&](std::int32_t b) { out.push_back({a, b}); });
   return out;
 }
 

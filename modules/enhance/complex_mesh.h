@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "model/complex.h"
 
 namespace stackmesh {
+
+/// A short list of vertices or triangles, kept in place.
+using ShortList = boost::container::small_vector<std::int32_t, 8>;
 
 /// A triangle while the complex is changed: its normal points from the smaller label of its pair to the
 /// larger. `patch` stands for the label pair and for lying in a flat cap; a dead triangle has patch -1.
@@ -23,12 +27,12 @@ class ComplexMesh {
  public:
   ComplexMesh() = default;
   /// `cap_area_mm2`: connected, exactly horizontal triangles of at least this area together are a flat cap.
-  ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2);
+  ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads = 0);
 
   std::vector<Vec3> points;
   std::vector<MeshTriangle> triangles;
-  std::vector<std::vector<std::int32_t>> star;   ///< triangles of each vertex; empty: the vertex is gone
-  std::vector<std::vector<std::int32_t>> curve;  ///< neighbours along curve edges
+  std::vector<ShortList> star;   ///< triangles of each vertex; empty: the vertex is gone
+  std::vector<ShortList> curve;  ///< neighbours along curve edges
   std::vector<char> pinned;                      ///< never moves, never removed
   std::vector<char> flat;                        ///< on a flat cap: keeps its z
 
@@ -61,6 +65,9 @@ class ComplexMesh {
   void neighbours(std::int32_t v, std::vector<std::int32_t>& out) const;
   /// Fan number of each triangle of v's star: fans are parts of the star not cut by curve edges.
   void fans(std::int32_t v, std::vector<std::int32_t>& out) const;
+  /// Neighbours above a in number, ascending: calls visit(b) for each edge a b, a < b, once.
+  template <class Visit>
+  void edges_from(std::int32_t a, Visit visit) const;
   /// All edges (a < b), ascending.
   std::vector<std::array<std::int32_t, 2>> edges() const;
 
@@ -83,7 +90,7 @@ class ComplexMesh {
   /// Makes an edge a ridge (no-op if it is a curve edge already).
   void add_ridge(std::int32_t a, std::int32_t b);
   /// Finds pinched vertices anew.
-  void find_pinned();
+  void find_pinned(int threads = 0);
 
   Vec3 area_vector(const std::array<std::int32_t, 3>& v) const {
     return 0.5 * cross(points[v[1]] - points[v[0]], points[v[2]] - points[v[0]]);
@@ -93,10 +100,23 @@ class ComplexMesh {
 
  private:
   void mark_caps(double cap_area_mm2);
-  void find_curves();
+  void find_curves(int threads);
   bool is_pinched(std::int32_t v) const;
   std::vector<std::pair<Label, Label>> pairs_;
 };
+
+template <class Visit>
+void ComplexMesh::edges_from(std::int32_t a, Visit visit) const {
+  ShortList around;
+  for (std::int32_t t : star[a])
+    for (std::int32_t w : triangles[t].v) {
+      if (w <= a) continue;
+      auto at = around.end();
+      while (at != around.begin() && *(at - 1) > w) --at;
+      if (at == around.begin() || *(at - 1) != w) around.insert(at, w);
+    }
+  for (std::int32_t b : around) visit(b);
+}
 
 /// Smallest angle of a triangle, as its cosine's negative would order it: the sine-free measure used in loops
 /// is the angle itself, radians.

@@ -22,13 +22,16 @@ TriangleGrid::Box TriangleGrid::box_of(const Corners3& c, double margin) {
   return b;
 }
 
-void TriangleGrid::build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm) {
+void TriangleGrid::build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm,
+                         std::vector<float> margins) {
   inverse_ = static_cast<float>(1 / cell_mm);
   std::size_t size = 1024;
   while (size < mesh.triangles.size()) size *= 2;
   mask_ = size - 1;
-  buckets_.assign(size, {});
+  blocks_.assign(size, {});
+  spare_.clear();
   boxes_.assign(mesh.triangles.size(), Box());
+  margins_ = std::move(margins);
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t)
     if (mesh.alive(t)) {
       const auto& v = mesh.triangles[t].v;
@@ -36,25 +39,46 @@ void TriangleGrid::build(const ComplexMesh& mesh, const std::vector<Vec3>& point
     }
 }
 
+void TriangleGrid::push(std::size_t bucket, std::int32_t t) {
+  if (blocks_[bucket].count == static_cast<std::int32_t>(blocks_[bucket].items.size())) {
+    std::int32_t n = static_cast<std::int32_t>(blocks_.size());
+    if (spare_.empty()) {
+      blocks_.emplace_back();
+    } else {
+      n = spare_.back();
+      spare_.pop_back();
+    }
+    blocks_[n] = blocks_[bucket];
+    blocks_[bucket].count = 0;
+    blocks_[bucket].next = n;
+  }
+  Block& head = blocks_[bucket];
+  head.items[head.count++] = t;
+}
+
+void TriangleGrid::drop(std::size_t bucket, std::int32_t t) {
+  Block& head = blocks_[bucket];
+  for (auto n = static_cast<std::int32_t>(bucket); n >= 0; n = blocks_[n].next) {
+    Block& block = blocks_[n];
+    const auto end = block.items.begin() + block.count, it = std::find(block.items.begin(), end, t);
+    if (it == end) continue;
+    *it = head.items[--head.count];
+    if (head.count == 0 && head.next >= 0) {
+      spare_.push_back(head.next);
+      head = Block(blocks_[head.next]);
+    }
+    return;
+  }
+}
+
 void TriangleGrid::insert(std::int32_t t, const Corners3& corners) {
   if (static_cast<std::size_t>(t) >= boxes_.size()) boxes_.resize(t + 1 + t / 4);
-  const Box b = boxes_[t] = box_of(corners, 0);
-  for (std::int32_t i = cell(b.low[0]); i <= cell(b.high[0]); ++i)
-    for (std::int32_t j = cell(b.low[1]); j <= cell(b.high[1]); ++j)
-      for (std::int32_t k = cell(b.low[2]); k <= cell(b.high[2]); ++k) buckets_[bucket(i, j, k)].push_back(t);
+  boxes_[t] = box_of(corners, margins_.empty() ? 0.0 : margins_[t]);
+  each_cell(boxes_[t], [&](std::size_t b) { push(b, t); });
 }
 
 void TriangleGrid::remove(std::int32_t t) {
-  const Box b = boxes_[t];
-  for (std::int32_t i = cell(b.low[0]); i <= cell(b.high[0]); ++i)
-    for (std::int32_t j = cell(b.low[1]); j <= cell(b.high[1]); ++j)
-      for (std::int32_t k = cell(b.low[2]); k <= cell(b.high[2]); ++k) {
-        auto& list = buckets_[bucket(i, j, k)];
-        const auto it = std::find(list.begin(), list.end(), t);
-        if (it == list.end()) continue;
-        *it = list.back();
-        list.pop_back();
-      }
+  each_cell(boxes_[t], [&](std::size_t b) { drop(b, t); });
   boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}};  // covers no cell
 }
 
@@ -146,25 +170,38 @@ void Guard::update(const std::vector<std::int32_t>& touched) {
   known_ = std::max(known_, mesh_.triangles.size());
 }
 
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+std::vector<float> clearances(const ComplexMesh& mesh, const MoveLimits& limits) {
+  std::vector<float> out(mesh.triangles.size(), static_cast<float>(limits.clearance_mm));
+  if (limits.size_mm)
+    for (std::size_t t = 0; t < out.size(); ++t) {
+      const auto& v = mesh.triangles[t].v;
+      const auto& size = *limits.size_mm;
+      if (mesh.triangles[t].patch >= 0)
+        out[t] = static_cast<float>(
+            std::max(limits.clearance_mm, limits.clearance_rel * std::min({size[v[0]], size[v[1]], size[v[2]]})));
+    }
+  return out;
+}
+
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<float>& clearance,
                                          const std::vector<Vec3>& before, const std::vector<Vec3>& points,
                                          const std::vector<std::int32_t>& suspects, const MoveLimits& limits,
                                          int threads) {
-  const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree),
-               clearance_mm = limits.clearance_mm;
+  const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree);
   const double corner = limits.corner_angle_deg * degree, turn = std::cos(limits.turn_deg * degree);
   const auto at = [&](const std::vector<Vec3>& p, std::int32_t t) {
     const auto& v = mesh.triangles[t].v;
     return Corners3{p[v[0]], p[v[1]], p[v[2]]};
   };
-  const auto offends = [&](std::int32_t i, std::int32_t j, const Corners3& s) {
+  const auto offends = [&](std::int32_t i, std::int32_t j) {
     const SharedCorners h = shared_corners(mesh.triangles[i].v, mesh.triangles[j].v);
-    const Corners3 t = at(points, j);
+    const Corners3 s = at(points, i), t = at(points, j);
     if (h.count == 0) {
-      if (certainly_apart(s, t, clearance_mm)) return false;
+      const double gap = std::max(clearance[i], clearance[j]);
+      if (certainly_apart(s, t, gap)) return false;
       if (triangles_meet(s, t, h)) return true;
       const double d = squared_distance(s, t);
-      return d < clearance_mm * clearance_mm && d < squared_distance(at(before, i), at(before, j));
+      return d < gap * gap && d < squared_distance(at(before, i), at(before, j));
     }
     if (h.count == 2) {
       const double cosine = sheet_cosine(s, t, h);
@@ -173,7 +210,8 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
     }
     return triangles_meet(s, t, h);
   };
-  const auto spoiled = [&](std::int32_t i, const Corners3& s) {
+  const auto spoiled = [&](std::int32_t i) {
+    const Corners3 s = at(points, i);
     const Vec3 area = cross(s[1] - s[0], s[2] - s[0]);
     if (!(dot(area, area) > 0)) return true;
     if (corner == 0 && limits.turn_deg == 0) return false;
@@ -186,23 +224,35 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
     const Vec3 old = cross(b[1] - b[0], b[2] - b[0]);
     return dot(old, area) < turn * std::sqrt(dot(old, old) * dot(area, area)) * (1 - 1e-12);
   };
-  constexpr std::size_t kChunk = 1024;
-  const std::size_t chunks = (suspects.size() + kChunk - 1) / kChunk;
-  std::vector<std::vector<std::int32_t>> found(chunks);
   std::vector<char> is_suspect(mesh.triangles.size(), 0);
   for (std::int32_t t : suspects) is_suspect[t] = 1;
-  parallel_for(chunks, threads, [&](std::size_t chunk) {
-    auto& mine = found[chunk];
-    for (std::size_t n = chunk * kChunk; n < std::min(suspects.size(), (chunk + 1) * kChunk); ++n) {
+  // Where most are suspects, the buckets are gone through for pairs; else each suspect asks for its own.
+  const bool by_bucket = 3 * suspects.size() > mesh.triangles.size();
+  constexpr std::size_t kRun = 1024;
+  const std::size_t asked = (suspects.size() + kRun - 1) / kRun, swept = by_bucket ? (grid.bucket_count() + kRun - 1) / kRun : 0;
+  std::vector<std::vector<std::int32_t>> found(asked + swept);
+  parallel_for(asked + swept, threads, [&](std::size_t run) {
+    auto& mine = found[run];
+    const auto test = [&](std::int32_t i, std::int32_t j) {
+      if (offends(i, j)) {
+        mine.push_back(i);
+        mine.push_back(j);
+      }
+    };
+    if (run >= asked) {
+      std::vector<std::int32_t> buffer;
+      const std::size_t first = (run - asked) * kRun;
+      grid.pairs(first, std::min(grid.bucket_count(), first + kRun), buffer, [&](std::int32_t i, std::int32_t j) {
+        if (is_suspect[i] || is_suspect[j]) test(i, j);
+      });
+      return;
+    }
+    for (std::size_t n = run * kRun; n < std::min(suspects.size(), (run + 1) * kRun); ++n) {
       const std::int32_t i = suspects[n];
-      const Corners3 s = at(points, i);
-      if (spoiled(i, s)) mine.push_back(i);
-      grid.query(s, clearance_mm, [&](std::int32_t j) {
-        if (j == i || (is_suspect[j] && j < i)) return true;
-        if (offends(i, j, s)) {
-          mine.push_back(i);
-          mine.push_back(j);
-        }
+      if (spoiled(i)) mine.push_back(i);
+      if (by_bucket) continue;
+      grid.query(at(points, i), clearance[i], [&](std::int32_t j) {
+        if (j != i && !(is_suspect[j] && j < i)) test(std::min(i, j), std::max(i, j));
         return true;
       });
     }
@@ -227,7 +277,7 @@ std::size_t count_contacts(const ComplexMesh& mesh, int threads) {
   grid.build(mesh, mesh.points, 1.5 * sum / static_cast<double>(all.size()));
   MoveLimits none;
   none.sheet_angle_deg = 0.01;
-  return find_offenders(mesh, grid, mesh.points, mesh.points, all, none, threads).size();
+  return find_offenders(mesh, grid, clearances(mesh, none), mesh.points, mesh.points, all, none, threads).size();
 }
 
 }  // namespace stackmesh

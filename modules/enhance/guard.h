@@ -13,8 +13,9 @@ namespace stackmesh {
 /// Triangles by the cells of a hashed grid. Queries may run in parallel.
 class TriangleGrid {
  public:
-  /// Takes all triangles of the mesh that are alive, with their corners at `points`.
-  void build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm);
+  /// Takes all triangles of the mesh that are alive, with their corners at `points`; a triangle's box is wider by its
+  /// margin to all sides (empty: by none).
+  void build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm, std::vector<float> margins = {});
   void insert(std::int32_t t, const Corners3& corners);
   void remove(std::int32_t t);
 
@@ -23,9 +24,24 @@ class TriangleGrid {
   template <class Visit>
   bool query(const Corners3& corners, double margin, Visit visit) const;
 
+  /// Calls visit(i, j), i < j, for every two triangles whose boxes meet in cells of the buckets from first to last; a pair
+  /// may come twice, rarely.
+  std::size_t bucket_count() const { return mask_ + 1; }
+  template <class Visit>
+  void pairs(std::size_t first, std::size_t last, std::vector<std::int32_t>& buffer, Visit visit) const;
+
  private:
   struct Box {
     std::array<float, 3> low, high;
+    bool meets(const Box& o) const {
+      return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] && o.low[1] <= high[1] && low[2] <= o.high[2] &&
+             o.low[2] <= high[2];
+    }
+  };
+  /// A bucket's head; what does not fit is in blocks behind it.
+  struct Block {
+    std::int32_t count = 0, next = -1;
+    std::array<std::int32_t, 6> items;
   };
   static Box box_of(const Corners3& c, double margin);
   std::int32_t cell(float x) const { return static_cast<std::int32_t>(std::floor(x * inverse_)); }
@@ -34,10 +50,23 @@ class TriangleGrid {
             static_cast<std::uint32_t>(k) * 83492791u) &
            mask_;
   }
+  template <class Body>
+  void each_cell(const Box& b, Body body) const {
+    const std::int32_t lo[3] = {cell(b.low[0]), cell(b.low[1]), cell(b.low[2])},
+                       hi[3] = {cell(b.high[0]), cell(b.high[1]), cell(b.high[2])};
+    for (std::int32_t i = lo[0]; i <= hi[0]; ++i)
+      for (std::int32_t j = lo[1]; j <= hi[1]; ++j)
+        for (std::int32_t k = lo[2]; k <= hi[2]; ++k) body(bucket(i, j, k));
+  }
+  void push(std::size_t bucket, std::int32_t t);
+  void drop(std::size_t bucket, std::int32_t t);
+
   float inverse_ = 1;
   std::size_t mask_ = 0;
-  std::vector<std::vector<std::int32_t>> buckets_;
+  std::vector<Block> blocks_;
+  std::vector<std::int32_t> spare_;  ///< blocks that are not used
   std::vector<Box> boxes_;
+  std::vector<float> margins_;
 };
 
 /// A change that is asked for: triangles that go, corners of those that come, and one vertex at a new place
@@ -84,15 +113,21 @@ class Guard {
 /// What moves of many vertices at once must keep, each "not below, and not worse than before".
 struct MoveLimits {
   double clearance_mm = 0;      ///< between triangles without a common corner
+  const std::vector<double>* size_mm = nullptr;  ///< and, if given, this share of the smallest edge length asked for at
+  double clearance_rel = 0;                      ///< their corners
   double sheet_angle_deg = 20;  ///< between triangles at a common edge
   double corner_angle_deg = 0;  ///< smallest angle of a triangle
   double turn_deg = 0;          ///< a triangle's normal turns by no more; 0: any turn is allowed
 };
 
+/// For every triangle the distance that others have to keep from it, mm.
+std::vector<float> clearances(const ComplexMesh& mesh, const MoveLimits& limits);
+
 /// Numbers of the triangles among `suspects` (and of those they meet) that cross or offend a limit with the
-/// corners at `points`, `before` being the places that are known to be good. Ascending; independent of the
+/// corners at `points`, `before` being the places that are known to be good; the grid holds the triangles at `points` with
+/// their clearances as margins. Ascending; independent of the
 /// thread count.
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<float>& clearance,
                                          const std::vector<Vec3>& before, const std::vector<Vec3>& points,
                                          const std::vector<std::int32_t>& suspects, const MoveLimits& limits,
                                          int threads);
@@ -108,18 +143,39 @@ bool TriangleGrid::query(const Corners3& corners, double margin, Visit visit) co
   for (std::int32_t i = lo[0]; i <= hi[0]; ++i)
     for (std::int32_t j = lo[1]; j <= hi[1]; ++j)
       for (std::int32_t k = lo[2]; k <= hi[2]; ++k)
-        for (std::int32_t t : buckets_[bucket(i, j, k)]) {
-          const Box& o = boxes_[t];
-          if (o.low[0] > b.high[0] || o.high[0] < b.low[0] || o.low[1] > b.high[1] || o.high[1] < b.low[1] ||
-              o.low[2] > b.high[2] || o.high[2] < b.low[2])
-            continue;
-          // Reported only by the first cell that both are in.
-          if (cell(std::max(o.low[0], b.low[0])) != i || cell(std::max(o.low[1], b.low[1])) != j ||
-              cell(std::max(o.low[2], b.low[2])) != k)
-            continue;
-          if (!visit(t)) return false;
+        for (auto n = static_cast<std::int32_t>(bucket(i, j, k)); n >= 0; n = blocks_[n].next) {
+          const Block& block = blocks_[n];
+          for (std::int32_t e = 0; e < block.count; ++e) {
+            const std::int32_t t = block.items[e];
+            const Box& o = boxes_[t];
+            if (!o.meets(b)) continue;
+            // Reported only by the first cell that both are in.
+            if (std::max(cell(o.low[0]), lo[0]) != i || std::max(cell(o.low[1]), lo[1]) != j ||
+                std::max(cell(o.low[2]), lo[2]) != k)
+              continue;
+            if (!visit(t)) return false;
+          }
         }
   return true;
+}
+
+template <class Visit>
+void TriangleGrid::pairs(std::size_t first, std::size_t last, std::vector<std::int32_t>& buffer, Visit visit) const {
+  for (std::size_t h = first; h < last; ++h) {
+    buffer.clear();
+    for (auto n = static_cast<std::int32_t>(h); n >= 0; n = blocks_[n].next)
+      buffer.insert(buffer.end(), blocks_[n].items.begin(), blocks_[n].items.begin() + blocks_[n].count);
+    for (std::size_t x = 1; x < buffer.size(); ++x) {
+      const Box& b = boxes_[buffer[x]];
+      for (std::size_t y = 0; y < x; ++y) {
+        const Box& o = boxes_[buffer[y]];
+        if (!b.meets(o) || buffer[x] == buffer[y]) continue;
+        if (bucket(cell(std::max(b.low[0], o.low[0])), cell(std::max(b.low[1], o.low[1])), cell(std::max(b.low[2], o.low[2]))) ==
+            h)
+          visit(std::min(buffer[x], buffer[y]), std::max(buffer[x], buffer[y]));
+      }
+    }
+  }
 }
 
 }  // namespace stackmesh

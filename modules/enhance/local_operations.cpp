@@ -109,7 +109,7 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
     off = std::min(off, dot(d, d));
   }
   if (mesh_.curve[gone].empty() && off > reach * reach) return false;
-  removed_ = star;
+  removed_.assign(star.begin(), star.end());
   Change c;
   c.removed = &removed_;
   c.added = &added_;
@@ -261,7 +261,7 @@ bool LocalOperations::relocate(std::int32_t v) {
   std::stable_sort(places.begin(), places.end(),
                    [](const auto& x, const auto& y) { return x.first > y.first; });
   if (places.size() > 4) places.resize(4);
-  removed_ = mesh_.star[v];
+  removed_.assign(mesh_.star[v].begin(), mesh_.star[v].end());
   added_.clear();
   for (std::int32_t t : removed_) added_.push_back(mesh_.triangles[t].v);
   Change c;

@@ -23,7 +23,7 @@ struct Neighbours {
         if (mesh.curve[v].empty())
           mesh.neighbours(v, around);
         else
-          around = mesh.curve[v];
+          around.assign(mesh.curve[v].begin(), mesh.curve[v].end());
       }
       list.insert(list.end(), around.begin(), around.end());
       first.push_back(list.size());
@@ -99,7 +99,8 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
   std::vector<float> share(n, 1);
   const double cell = 1.5 * mean_edge(mesh);
   TriangleGrid grid;
-  grid.build(mesh, now, cell);
+  const std::vector<float> clearance = clearances(mesh, keep);
+  grid.build(mesh, now, cell, clearance);
   std::vector<std::int32_t> suspects;
   const auto moves = [&](std::int32_t v) {
     return now[v].x != before[v].x || now[v].y != before[v].y || now[v].z != before[v].z;
@@ -111,7 +112,7 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
   std::vector<std::int32_t> changed;
   for (;;) {
     ++result.rounds;
-    const std::vector<std::int32_t> bad = find_offenders(mesh, grid, before, now, suspects, keep, threads);
+    const std::vector<std::int32_t> bad = find_offenders(mesh, grid, clearance, before, now, suspects, keep, threads);
     changed.clear();
     for (std::int32_t t : bad)
       for (std::int32_t v : mesh.triangles[t].v)
