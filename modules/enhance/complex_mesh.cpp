@@ -56,7 +56,15 @@ ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, i
   for (auto& [pair, n] : numbers) {
     n = static_cast<std::int32_t>(pairs_.size());
     pairs_.push_back(pair);
+    labels_.push_back(pair.first);
+    labels_.push_back(pair.second);
   }
+  std::sort(labels_.begin(), labels_.end());
+  labels_.erase(std::unique(labels_.begin(), labels_.end()), labels_.end());
+  const auto number_of = [&](Label l) {
+    return static_cast<std::int32_t>(std::lower_bound(labels_.begin(), labels_.end(), l) - labels_.begin());
+  };
+  for (const auto& [below, above] : pairs_) sides_.push_back({number_of(below), number_of(above)});
   star.resize(points.size());
   curve.resize(points.size());
   pinned.assign(points.size(), 0);
@@ -347,6 +355,8 @@ ComplexMesh ComplexMesh::part(const std::vector<std::int32_t>& numbers, std::siz
                               std::vector<std::int32_t>& vertices) const {
   ComplexMesh out;
   out.pairs_ = pairs_;
+  out.labels_ = labels_;
+  out.sides_ = sides_;
   vertices.clear();
   for (std::int32_t t : numbers) vertices.insert(vertices.end(), triangles[t].v.begin(), triangles[t].v.end());
   std::sort(vertices.begin(), vertices.end());

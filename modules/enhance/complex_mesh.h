@@ -59,6 +59,11 @@ class ComplexMesh {
   bool is_cap(std::int32_t patch) const { return patch & 1; }
   std::pair<Label, Label> labels_of(std::int32_t patch) const { return pairs_[patch >> 1]; }
 
+  /// All labels, ascending; patches are below 2 * pair_count(); the two labels of a patch as numbers in `labels()`.
+  const std::vector<Label>& labels() const { return labels_; }
+  std::size_t pair_count() const { return pairs_.size(); }
+  const std::array<std::int32_t, 2>& sides(std::int32_t patch) const { return sides_[patch >> 1]; }
+
   /// The (one, two or more) triangles of an edge.
   void edge_triangles(std::int32_t a, std::int32_t b, std::vector<std::int32_t>& out) const;
   /// Neighbours of a vertex, ascending.
@@ -103,6 +108,8 @@ class ComplexMesh {
   void find_curves(int threads);
   bool is_pinched(std::int32_t v) const;
   std::vector<std::pair<Label, Label>> pairs_;
+  std::vector<Label> labels_;
+  std::vector<std::array<std::int32_t, 2>> sides_;
 };
 
 template <class Visit>

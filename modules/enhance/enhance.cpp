@@ -42,20 +42,35 @@ class Enhancement {
       return std::move(result_);
     }
     tick("before");
-    ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm);
+    ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm, o_.threads);
     volumes_ = label_volumes(mesh);
     for (auto& [label, v] : volumes_) {
       const auto wanted = o_.label_volume_mm3.find(label);
       if (wanted != o_.label_volume_mm3.end()) v = wanted->second;
     }
-    shell_sizes(mesh, &shells_);tick("build, shells");
+    shell_ = shell_sizes(mesh, &shells_);
+    tick("build, shells");
     result_.complex = stitched_;
-    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm));
+    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm), o_.threads);
     tick("ridges");
-    if (o_.smooth_passes > 0 && !step("smoothed", mesh, [&] { smooth_mesh(mesh); }))
-      return std::move(result_);
+    if (o_.smooth_passes > 0) smooth_mesh(mesh);
+    tick("smooth");
     progress_.advance(0.25);
-    if (o_.remesh && step("enhanced", mesh, [&] { remesh_mesh(mesh); })) compare_volumes(mesh);
+    const std::vector<Vec3> smoothed = mesh.points;  // smoothing only moves points
+    if (o_.remesh) {
+      remesh_mesh(mesh);
+      if (stands("enhanced", mesh)) {
+        result_.complex = mesh.to_complex();
+        compare_volumes(mesh);
+        progress_.advance(1);
+        return std::move(result_);
+      }
+    }
+    if (o_.smooth_passes > 0) {
+      InterfaceComplex moved = stitched_;
+      moved.points = smoothed;
+      if (stands("smoothed", ComplexMesh(moved, 0, o_.threads))) result_.complex = std::move(moved);
+    }
     progress_.advance(1);
     return std::move(result_);
   }
@@ -83,24 +98,20 @@ class Enhancement {
 
   void warn(const std::string& text) { result_.warnings.push_back(text); }
 
-  /// Runs a step; when its result is not sound the one before stands.
-  template <class Body>
-  bool step(const char* level, ComplexMesh& mesh, Body body) {
-    body();
-    tick("body");std::size_t shells = 0;
+  /// True when the whole surface is as sound as the stitched one, which an exact test of all its triangles says.
+  bool stands(const char* level, const ComplexMesh& mesh) {
+    std::size_t shells = 0;
     shell_sizes(mesh, &shells);
     const std::size_t contacts = count_contacts(mesh, o_.threads);
     tick("check");
-    if (contacts > 0 || shells != shells_) {
-      warn("the " + std::string(level) + " surface was given up for the " + result_.level + " one: " +
-           (contacts > 0
-                ? std::to_string(contacts) + " triangles meet others"
-                : "closed shells went from " + std::to_string(shells_) + " to " + std::to_string(shells)));
-      return false;
+    if (contacts == 0 && shells == shells_) {
+      result_.level = level;
+      return true;
     }
-    result_.level = level;
-    result_.complex = mesh.to_complex();
-    return true;
+    warn("the " + std::string(level) + " surface was given up: " +
+         (contacts > 0 ? std::to_string(contacts) + " triangles meet others"
+                       : "closed shells went from " + std::to_string(shells_) + " to " + std::to_string(shells)));
+    return false;
   }
 
   void smooth_mesh(ComplexMesh& mesh) {
@@ -112,20 +123,22 @@ class Enhancement {
     s.keep.sheet_angle_deg = o_.sheet_angle_deg;
     s.threads = o_.threads;
     // What is thin or small moves less: it has no volume to spare.
-    const std::vector<double> thin = wall_thickness(mesh, 2 * o_.pixel_mm, o_.threads),
-                              shell = shell_sizes(mesh);
+    const std::vector<double> thin = wall_thickness(mesh, 2 * o_.pixel_mm, o_.threads);
     for (std::size_t v = 0; v < thin.size(); ++v)
       s.share.push_back(
-          static_cast<float>(std::min({1.0, thin[v] / (1.5 * o_.pixel_mm), shell[v] / (4 * o_.pixel_mm)})));
-    tick("thin");const SmoothingResult r = smooth(mesh, s);tick("smooth");
+          static_cast<float>(std::min({1.0, thin[v] / (1.5 * o_.pixel_mm), shell_[v] / (4 * o_.pixel_mm)})));
+    tick("thin");
+    s.volumes = volumes_;
+    s.volume_limit_mm = 0.2 * o_.pixel_mm;
+    const SmoothingResult r = smooth(mesh, s);
     result_.counts.smoothed = r.moved;
     result_.counts.held_back = r.held_back;
-    restore_volumes(mesh, volumes_, 0.2 * o_.pixel_mm, s.keep, o_.threads);
   }
 
   SizingOptions sizing(const ComplexMesh& mesh) {
     SizingOptions s;
     s.threads = o_.threads;
+    s.shell_mm = shell_;
     s.gradation = o_.gradation;
     s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(0.5 * o_.pixel_mm);
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
@@ -180,11 +193,11 @@ class Enhancement {
   /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
   void coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
     const double most = static_cast<double>(*o_.target_tets) / kTetsPerTriangle;
-    const std::vector<double> fine = size, shell = shell_sizes(mesh);
+    const std::vector<double> fine = size;
     for (int pass = 0; pass < 20 && expected_triangles(mesh, size) > most; ++pass) {
       result_.coarsened *= std::max(1.02, std::sqrt(expected_triangles(mesh, size) / most));
       for (std::size_t v = 0; v < size.size(); ++v)
-        size[v] = std::min(result_.coarsened * fine[v], std::max(fine[v], 0.5 * shell[v]));
+        size[v] = std::min(result_.coarsened * fine[v], std::max(fine[v], 0.5 * shell_[v]));
     }
     if (result_.coarsened > 1)
       warn("edges were made " + number(result_.coarsened) + " times longer than the default, for a target of " +
@@ -207,7 +220,7 @@ class Enhancement {
     result_.expected_triangles = static_cast<std::size_t>(triangles);
     result_.expected_tets = static_cast<std::size_t>(kTetsPerTriangle * triangles);
     refuse_giants(triangles);
-    const Reference reference(mesh, 0.6 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
+    const Reference reference(mesh, 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
     tick("reference");RemeshOptions r;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
@@ -244,6 +257,7 @@ class Enhancement {
   Progress& progress_;
   EnhanceResult result_;
   std::map<Label, double> volumes_;  // to be kept
+  std::vector<double> shell_;        // of each vertex of the stitched complex: size of its smallest closed shell
   std::size_t shells_ = 0;
 };
 

@@ -119,7 +119,7 @@ class Remesher {
   }
 
   template <class Target>
-  void move_all(const MoveLimits& keep, Target target) {
+  void move_all(Target target) {
     std::vector<Vec3> to = mesh_.points;
     constexpr std::size_t kChunk = 512;
     parallel_for((to.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
@@ -130,25 +130,23 @@ class Remesher {
           if (mesh_.contains(p)) to[v] = p;
         }
     });
-    ops_.counts.relocations += move_guarded(mesh_, to, keep, o_.threads).moved;
+    ops_.counts.relocations += move_guarded(mesh_, to, limits(), o_.threads).moved;
   }
 
-  double clearance() const {
-    double least = 1e300;
-    for (std::size_t v = 0; v < size_.size(); ++v)
-      if (!mesh_.star[v].empty()) least = std::min(least, size_[v]);
-    return least < 1e300 ? o_.clearance_rel * least : 0;
+  MoveLimits limits() const {
+    MoveLimits keep;
+    keep.size_mm = &size_;
+    keep.clearance_rel = o_.clearance_rel;
+    keep.sheet_angle_deg = o_.sheet_angle_deg;
+    keep.corner_angle_deg = 25;
+    keep.turn_deg = 60;
+    return keep;
   }
 
   /// To the centroid of the star (curves: between the neighbours), on the reference.
   void relocate_all(int passes) {
-    MoveLimits keep;
-    keep.clearance_mm = clearance();
-    keep.sheet_angle_deg = o_.sheet_angle_deg;
-    keep.corner_angle_deg = 25;
-    keep.turn_deg = 60;
     for (int pass = 0; pass < passes; ++pass)
-      move_all(keep, [&](std::int32_t v) {
+      move_all( [&](std::int32_t v) {
         const Vec3 here = mesh_.points[v];
         Vec3 sum;
         double weight = 0;
@@ -200,12 +198,7 @@ class Remesher {
         }
       }
     });
-    MoveLimits keep;
-    keep.clearance_mm = clearance();
-    keep.sheet_angle_deg = o_.sheet_angle_deg;
-    keep.corner_angle_deg = 25;
-    keep.turn_deg = 60;
-    move_all(keep, [&](std::int32_t v) {
+    move_all( [&](std::int32_t v) {
       Vec3 sum;
       double weight = 0;
       for (std::int32_t t : mesh_.star[v]) {
@@ -350,7 +343,8 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
     for (const RemeshCounts& c : each) add(counts, c);
     join_blocks(mesh, size, hints, blocks);
   };
-  for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });tick("coarsen");
+  for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });
+  tick("coarsen");
   for (int round = 0; round < options.rounds; ++round) {
     // The first round works on the stitched needles: sides of blocks among them would leave needles behind.
     in_blocks(round == 0, [&](Remesher& r) { r.round(round); });

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/parallel.h"
+
 namespace stackmesh {
 namespace {
 
@@ -38,23 +40,40 @@ Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::i
 
 }  // namespace
 
-std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm) {
+std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm, int threads) {
   const double limit = std::cos(feature_deg * M_PI / 180),
                wide_limit = std::cos(0.75 * feature_deg * M_PI / 180);
+  const std::vector<std::array<std::int32_t, 2>> edges = mesh.edges();
+  std::vector<char> is_sharp(edges.size(), 0);
+  for_each_index(
+      edges.size(), threads,
+      [&](std::size_t e) {
+        const auto [a, b] = edges[e];
+        if (mesh.is_curve_edge(a, b)) return;
+        ShortList around;
+        for (std::int32_t t : mesh.star[a])
+          if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b) around.push_back(t);
+        const Vec3 n = mesh.area_vector(mesh.triangles[around[0]].v), m = mesh.area_vector(mesh.triangles[around[1]].v);
+        is_sharp[e] = dot(n, m) <= limit * norm(n) * norm(m);
+      });
+  const std::size_t run = edges.size() / 16 + 1;
+  parallel_for(16, threads, [&](std::size_t part) {
+    std::vector<std::int32_t> around, stamp(mesh.triangles.size(), 0);
+    std::int32_t now = 0;
+    for (std::size_t e = part * run; e < std::min(edges.size(), (part + 1) * run); ++e) {
+      if (!is_sharp[e]) continue;
+      const auto [a, b] = edges[e];
+      mesh.edge_triangles(a, b, around);
+      const Vec3 left = wide_normal(mesh, a, b, around[0], around[1], 0.375 * length_mm, stamp, ++now);
+      const Vec3 right = wide_normal(mesh, a, b, around[1], around[0], 0.375 * length_mm, stamp, ++now);
+      is_sharp[e] = dot(left, right) <= wide_limit * norm(left) * norm(right);
+    }
+  });
   std::map<std::int32_t, std::vector<std::int32_t>> sharp;
-  std::vector<std::int32_t> around, stamp(mesh.triangles.size(), 0);
-  std::int32_t now = 0;
-  for (const auto& [a, b] : mesh.edges()) {
-    if (mesh.is_curve_edge(a, b)) continue;
-    mesh.edge_triangles(a, b, around);
-    const Vec3 n = mesh.area_vector(mesh.triangles[around[0]].v),
-               m = mesh.area_vector(mesh.triangles[around[1]].v);
-    if (dot(n, m) > limit * norm(n) * norm(m)) continue;
-    const Vec3 left = wide_normal(mesh, a, b, around[0], around[1], 0.375 * length_mm, stamp, ++now);
-    const Vec3 right = wide_normal(mesh, a, b, around[1], around[0], 0.375 * length_mm, stamp, ++now);
-    if (dot(left, right) > wide_limit * norm(left) * norm(right)) continue;
-    sharp[a].push_back(b);
-    sharp[b].push_back(a);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (!is_sharp[e]) continue;
+    sharp[edges[e][0]].push_back(edges[e][1]);
+    sharp[edges[e][1]].push_back(edges[e][0]);
   }
   // Chains go on where exactly two sharp edges meet, nearly straight; a bundle of sharp edges is noise.
   const auto next = [&](std::int32_t from, std::int32_t v) {

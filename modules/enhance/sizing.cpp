@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "enhance/guard.h"
+#include "enhance/smoothing.h"
 
 namespace stackmesh {
 namespace {
@@ -35,16 +36,24 @@ class Sizing {
   void asked() {
     size_.assign(mesh_.points.size(), 0);
     fixed_.assign(mesh_.points.size(), 0);
+    std::vector<std::array<double, 2>> of_pair;  // the length asked for, the largest by curvature
+    for (std::size_t p = 0; p < mesh_.pair_count(); ++p) {
+      const auto [below, above] = mesh_.labels_of(static_cast<std::int32_t>(2 * p));
+      std::array<double, 2> x = {1e300, 1e300};
+      for (Label l : {below, above}) {
+        const auto it = o_.label_edge_mm.find(l);
+        if (l != 0 && it != o_.label_edge_mm.end()) x[0] = std::min(x[0], it->second);
+        const auto limit = o_.label_max_mm.find(l);
+        if (l != 0 && limit != o_.label_max_mm.end()) x[1] = std::min(x[1], limit->second);
+      }
+      of_pair.push_back(x);
+    }
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       double s = 1e300, most = 1e300;
       for (std::int32_t t : mesh_.star[v]) {
-        const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
-        for (Label l : {below, above}) {
-          const auto it = o_.label_edge_mm.find(l);
-          if (l != 0 && it != o_.label_edge_mm.end()) s = std::min(s, it->second);
-          const auto limit = o_.label_max_mm.find(l);
-          if (l != 0 && limit != o_.label_max_mm.end()) most = std::min(most, limit->second);
-        }
+        const auto& x = of_pair[mesh_.triangles[t].patch >> 1];
+        s = std::min(s, x[0]);
+        most = std::min(most, x[1]);
       }
       fixed_[v] = s < 1e300;
       size_[v] = s < 1e300 ? s : o_.edge_length_mm.value_or(most < 1e300 ? most : o_.edge_max_mm);
@@ -129,7 +138,7 @@ class Sizing {
     if (count == 0) return;
     const double reach = mean / static_cast<double>(count);
     const std::vector<double> thin = wall_thickness(mesh_, reach, o_.threads);
-    const std::vector<double> shell = shell_sizes(mesh_);
+    const std::vector<double> shell = o_.shell_mm.empty() ? shell_sizes(mesh_) : o_.shell_mm;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       const double least = std::min(o_.edge_min_mm, size_[v]);
       if (thin[v] < reach) size_[v] = std::clamp(kAcross * thin[v], least, size_[v]);
@@ -141,54 +150,39 @@ class Sizing {
   /// Chords cut off what bulges. Where a label would lose more than its share of the volume so, edges on its thin parts
   /// get shorter until the loss that the bend predicts fits.
   void keep_volumes(const std::vector<double>& thin) {
-    std::map<Label, double> volume, loss;
-    const auto each_side = [&](auto body) {
-      for (const MeshTriangle& t : mesh_.triangles) {
-        if (t.patch < 0) continue;
-        const auto [below, above] = mesh_.labels_of(t.patch);
-        const double area = norm(mesh_.area_vector(t.v));
-        for (Label l : {below, above})
-          if (l != 0) body(l, t, area);
-      }
-    };
-    for (const MeshTriangle& t : mesh_.triangles) {
-      if (t.patch < 0) continue;
-      const auto [below, above] = mesh_.labels_of(t.patch);
-      const double v = dot(mesh_.points[t.v[0]], mesh_.area_vector(t.v)) / 3;
-      volume[below] += v;
-      volume[above] -= v;
-    }
-    std::map<Label, double> part;  // of the thickness that a chord may cut off
-    for (const auto& [label, v] : volume)
-      if (label != 0) part[label] = 1;
+    const std::size_t labels = mesh_.labels().size();
+    const bool outside = !mesh_.labels().empty() && mesh_.labels()[0] == 0;  // number 0 is the outside
+    const std::map<Label, double> volume = label_volumes(mesh_);
+    std::vector<double> part(labels, 1);  // of the thickness that a chord may cut off
+    std::vector<double> area(mesh_.triangles.size(), 0), radius(size_.size());
+    for_each_index(area.size(), o_.threads, [&](std::size_t t) { area[t] = norm(mesh_.area_vector(mesh_.triangles[t].v)); });
+    for_each_index(radius.size(), o_.threads, [&](std::size_t v) { radius[v] = std::min(1 / std::max(bend_[v], 1e-12), 1e12); });
     for (int pass = 0; pass < 6; ++pass) {
-      loss.clear();
-      each_side([&](Label l, const MeshTriangle& t, double area) {
-        for (std::int32_t v : t.v) {
-          const double r = std::min(1 / std::max(bend_[v], 1e-12), 1e12), reach = std::min(thin[v], 2 * r);
-          const double size = std::min(size_[v], chord(v, part[l] * reach));
-          loss[l] += area / 3 * std::min(size * size / (8 * r), 0.5 * reach);
-        }
-      });
+      std::vector<double> loss(labels, 0);
+      for (std::size_t t = 0; t < area.size(); ++t) {
+        if (mesh_.triangles[t].patch < 0) continue;
+        for (std::int32_t l : mesh_.sides(mesh_.triangles[t].patch))
+          if (!(l == 0 && outside))
+            for (std::int32_t v : mesh_.triangles[t].v) {
+              const double r = radius[v], reach = std::min(thin[v], 2 * r);
+              const double size = std::min(size_[v], chord(v, part[l] * reach));
+              loss[l] += area[t] / 3 * std::min(size * size / (8 * r), 0.5 * reach);
+            }
+      }
       bool any = false;
-      for (auto& [label, p] : part)
-        if (loss[label] > kLossShare * volume[label]) {
-          p *= 0.6;
+      for (std::size_t l = outside; l < labels; ++l)
+        if (loss[l] > kLossShare * volume.at(mesh_.labels()[l])) {
+          part[l] *= 0.6;
           any = true;
         }
       if (!any) break;
     }
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       double least = 1;
-      for (std::int32_t t : mesh_.star[v]) {
-        const auto [below, above] = mesh_.labels_of(mesh_.triangles[t].patch);
-        for (Label l : {below, above})
-          if (l != 0) least = std::min(least, part.at(l));
-      }
-      if (least < 1) {
-        const double r = std::min(1 / std::max(bend_[v], 1e-12), 1e12);
-        size_[v] = std::clamp(chord(v, least * std::min(thin[v], 2 * r)), std::min(o_.edge_min_mm, size_[v]), size_[v]);
-      }
+      for (std::int32_t t : mesh_.star[v])
+        for (std::int32_t l : mesh_.sides(mesh_.triangles[t].patch)) least = std::min(least, part[l]);
+      if (least < 1)
+        size_[v] = std::clamp(chord(v, least * std::min(thin[v], 2 * radius[v])), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
   }
 
@@ -244,19 +238,33 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  const auto label = [&](std::int32_t i) {
-    const auto [below, above] = mesh.labels_of(mesh.triangles[i / 2].patch);
-    return i % 2 ? above : below;
+  const auto join = [&](std::int32_t i, std::int32_t j) {
+    i = root(i);
+    j = root(j);
+    parent[std::max(i, j)] = std::min(i, j);
   };
+  const auto label = [&](std::int32_t i) { return mesh.labels()[mesh.sides(mesh.triangles[i / 2].patch)[i % 2]]; };
   std::vector<std::int32_t> around;
-  for (const auto& [a, b] : mesh.edges()) {
-    mesh.edge_triangles(a, b, around);
-    for (std::size_t i = 0; i < 2 * around.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        const std::int32_t s = 2 * around[i / 2] + static_cast<std::int32_t>(i % 2),
-                           t = 2 * around[j / 2] + static_cast<std::int32_t>(j % 2);
-        if (label(s) == label(t)) parent[std::max(root(s), root(t))] = std::min(root(s), root(t));
+  const auto is_free = [&](std::int32_t v) { return mesh.curve[v].empty() && !mesh.pinned[v]; };
+  for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a) {
+    if (mesh.star[a].empty()) continue;
+    if (is_free(a)) {  // one fan of one patch
+      for (std::int32_t t : mesh.star[a]) {
+        join(2 * t, 2 * mesh.star[a][0]);
+        join(2 * t + 1, 2 * mesh.star[a][0] + 1);
       }
+      continue;
+    }
+    mesh.edges_from(a, [&](std::int32_t b) {
+      if (is_free(b)) return;
+      mesh.edge_triangles(a, b, around);
+      for (std::size_t i = 0; i < 2 * around.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          const std::int32_t s = 2 * around[i / 2] + static_cast<std::int32_t>(i % 2),
+                             t = 2 * around[j / 2] + static_cast<std::int32_t>(j % 2);
+          if (label(s) == label(t)) join(s, t);
+        }
+    });
   }
   std::vector<double> volume(parent.size(), 0);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(parent.size()); ++i) {

@@ -14,6 +14,7 @@ struct SizingOptions {
   double edge_min_mm = 1, edge_max_mm = 10;
   std::map<Label, double> label_max_mm;  ///< by curvature: largest length on a label, instead of edge_max_mm
   double gradation = 1.3;                ///< lengths of neighbouring edges differ by at most this factor
+  std::vector<double> shell_mm;          ///< what `shell_sizes` says; empty: it is asked
   int threads = 0;
 };
 

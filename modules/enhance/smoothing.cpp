@@ -79,6 +79,51 @@ std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOption
   return p;
 }
 
+/// Places of the vertices at which every label has the volume asked for, to first order: label l grows by offset[l] along
+/// its normals; between a and b the sheet moves by the difference.
+std::vector<Vec3> places_of_volumes(const ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
+                                    int threads) {
+  std::map<Label, double> lack = volumes, offset, area;
+  for (const auto& [label, v] : label_volumes(mesh)) lack[label] -= v;
+  std::vector<double> shared(mesh.pair_count(), 0);
+  for (const MeshTriangle& t : mesh.triangles)
+    if (t.patch >= 0 && !mesh.is_cap(t.patch)) shared[t.patch >> 1] += norm(mesh.area_vector(t.v));
+  const auto labels = [&](std::size_t pair) { return mesh.labels_of(static_cast<std::int32_t>(2 * pair)); };
+  for (std::size_t p = 0; p < shared.size(); ++p)
+    for (Label l : {labels(p).first, labels(p).second}) area[l] += shared[p];
+  for (int pass = 0; pass < 60; ++pass)
+    for (const auto& [label, missing] : lack) {
+      if (label == 0 || !(area[label] > 0)) continue;
+      double sum = missing;
+      for (std::size_t p = 0; p < shared.size(); ++p) {
+        const auto [below, above] = labels(p);
+        if (below == label && above != 0) sum += shared[p] * offset[above];
+        if (above == label && below != 0) sum += shared[p] * offset[below];
+      }
+      offset[label] = std::clamp(sum / area[label], -limit_mm, limit_mm);
+    }
+  offset[0] = 0;
+  std::vector<double> step(shared.size());
+  for (std::size_t p = 0; p < step.size(); ++p) step[p] = offset[labels(p).first] - offset[labels(p).second];
+  std::vector<Vec3> targets = mesh.points;
+  for_each_index(targets.size(), threads, [&](std::size_t v) {
+    if (mesh.star[v].empty() || mesh.is_fixed(static_cast<std::int32_t>(v))) return;
+    Vec3 move;
+    double sum = 0;
+    for (std::int32_t t : mesh.star[v]) {
+      const std::int32_t patch = mesh.triangles[t].patch;
+      if (mesh.is_cap(patch)) continue;
+      const Vec3 a = mesh.area_vector(mesh.triangles[t].v);
+      move = move + step[patch >> 1] * a;
+      sum += norm(a);
+    }
+    if (!(sum > 0)) return;
+    if (mesh.flat[v]) move.z = 0;
+    targets[v] = targets[v] + (1 / sum) * move;
+  });
+  return targets;
+}
+
 double mean_edge(const ComplexMesh& mesh) {
   double sum = 0;
   std::size_t count = 0;
@@ -148,17 +193,25 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
 }
 
 SmoothingResult smooth(ComplexMesh& mesh, const SmoothingOptions& options) {
-  return move_guarded(mesh, smoothed_places(mesh, options), options.keep, options.threads);
+  std::vector<Vec3> to = smoothed_places(mesh, options);
+  if (options.volume_limit_mm > 0) {
+    std::swap(mesh.points, to);
+    std::vector<Vec3> restored = places_of_volumes(mesh, options.volumes, options.volume_limit_mm, options.threads);
+    std::swap(mesh.points, to);
+    to = std::move(restored);
+  }
+  return move_guarded(mesh, to, options.keep, options.threads);
 }
 
 std::map<Label, double> label_volumes(const ComplexMesh& mesh) {
+  std::vector<double> of_pair(mesh.pair_count(), 0);
+  for (const MeshTriangle& t : mesh.triangles)
+    if (t.patch >= 0) of_pair[t.patch >> 1] += dot(mesh.points[t.v[0]], mesh.area_vector(t.v)) / 3;
   std::map<Label, double> out;
-  for (const MeshTriangle& t : mesh.triangles) {
-    if (t.patch < 0) continue;
-    const auto [below, above] = mesh.labels_of(t.patch);
-    const double v = dot(mesh.points[t.v[0]], mesh.area_vector(t.v)) / 3;
-    out[below] += v;
-    out[above] -= v;
+  for (std::size_t p = 0; p < of_pair.size(); ++p) {
+    const auto [below, above] = mesh.labels_of(static_cast<std::int32_t>(2 * p));
+    out[below] += of_pair[p];
+    out[above] -= of_pair[p];
   }
   out.erase(0);
   return out;
@@ -166,45 +219,7 @@ std::map<Label, double> label_volumes(const ComplexMesh& mesh) {
 
 SmoothingResult restore_volumes(ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
                                 const MoveLimits& keep, int threads) {
-  // Label l grows by offset[l] along its normals; between a and b the sheet moves by the difference.
-  std::map<Label, double> lack = volumes, offset, area;
-  for (const auto& [label, v] : label_volumes(mesh)) lack[label] -= v;
-  std::map<std::pair<Label, Label>, double> shared;
-  for (const MeshTriangle& t : mesh.triangles) {
-    if (t.patch < 0 || mesh.is_cap(t.patch)) continue;
-    const double a = norm(mesh.area_vector(t.v));
-    shared[mesh.labels_of(t.patch)] += a;
-    for (Label l : {mesh.labels_of(t.patch).first, mesh.labels_of(t.patch).second}) area[l] += a;
-  }
-  for (int pass = 0; pass < 60; ++pass)
-    for (const auto& [label, missing] : lack) {
-      if (label == 0 || !(area[label] > 0)) continue;
-      double sum = missing;
-      for (const auto& [pair, a] : shared) {
-        if (pair.first == label && pair.second != 0) sum += a * offset[pair.second];
-        if (pair.second == label && pair.first != 0) sum += a * offset[pair.first];
-      }
-      offset[label] = std::clamp(sum / area[label], -limit_mm, limit_mm);
-    }
-  offset[0] = 0;
-  std::vector<Vec3> targets = mesh.points;
-  for (std::size_t v = 0; v < targets.size(); ++v) {
-    if (mesh.star[v].empty() || mesh.is_fixed(static_cast<std::int32_t>(v))) continue;
-    Vec3 move;
-    double sum = 0;
-    for (std::int32_t t : mesh.star[v]) {
-      const std::int32_t patch = mesh.triangles[t].patch;
-      if (mesh.is_cap(patch)) continue;
-      const Vec3 a = mesh.area_vector(mesh.triangles[t].v);
-      const auto [below, above] = mesh.labels_of(patch);
-      move = move + (offset[below] - offset[above]) * a;
-      sum += norm(a);
-    }
-    if (!(sum > 0)) continue;
-    if (mesh.flat[v]) move.z = 0;
-    targets[v] = targets[v] + (1 / sum) * move;
-  }
-  return move_guarded(mesh, targets, keep, threads);
+  return move_guarded(mesh, places_of_volumes(mesh, volumes, limit_mm, threads), keep, threads);
 }
 
 }  // namespace stackmesh

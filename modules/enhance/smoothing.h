@@ -16,6 +16,8 @@ struct SmoothingOptions {
   double limit_xy_mm = 0.5,
          limit_z_mm = 0.5;   ///< half axes of the ellipsoid about its origin that a vertex stays in
   std::vector<float> share;  ///< of the limits for each vertex; empty: all of them
+  std::map<Label, double> volumes;  ///< that the labels should have, mm3, as far as `volume_limit_mm` along the normals
+  double volume_limit_mm = 0;       ///< gives them; 0: they are not looked at
   MoveLimits keep;
   int threads = 0;
 };
