@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kFold = 0.35;      // cosine: a triangle's normal against that of its old fan
 constexpr double kFlipBend = 0.82;  // cosine: two triangles whose edge may be flipped
+constexpr double kNeedle = 0.01;    // radians: a triangle with so small an angle is to go whatever takes its place
 const double kSqrt2 = std::sqrt(2.0);
 
 Vec3 unit(const Vec3& a) {
@@ -135,7 +136,7 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   const std::array<std::int32_t, 3> one = {a, d, c}, two = {d, b, c};
   const double before = std::min(angle(mesh_.triangles[t[0]].v), angle(mesh_.triangles[t[1]].v));
   const double after = std::min(angle(one), angle(two));
-  bool better = after > before + gain_rad;
+  bool better = after > before + gain_rad || (before < kNeedle && after > 2 * before);
   if (!better && valence && after > std::max(0.45, 0.8 * before)) {
     const int was = ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) +
                     ideal_valence_error(d, 0);
@@ -146,7 +147,8 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   if (!better) return false;
   const Vec3 n0 = mesh_.area_vector(mesh_.triangles[t[0]].v), n1 = mesh_.area_vector(mesh_.triangles[t[1]].v);
   const Vec3 sum = unit(n0 + n1), m0 = unit(mesh_.area_vector(one)), m1 = unit(mesh_.area_vector(two));
-  if (dot(m0, sum) < kFlipBend || dot(m1, sum) < kFlipBend) return false;
+  // The normal of a needle says nothing.
+  if ((dot(m0, sum) < kFlipBend && angle(one) > kNeedle) || (dot(m1, sum) < kFlipBend && angle(two) > kNeedle)) return false;
   // Where the four corners are far from a plane, the flip changes the surface.
   const double out =
       std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;

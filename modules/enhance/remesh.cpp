@@ -33,6 +33,7 @@ class Remesher {
 
   void coarsen() {
     regrid();
+    flip_all(2 * kDegree, false, 2);
     collapse_short(4, 8 * kDegree);
   }
 
@@ -358,6 +359,18 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
   });
   tick("fit finish");in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });tick("finish");
   progress.advance(0.9);
+  if (std::getenv("WORST")) {
+    for (const MeshTriangle& t : mesh.triangles) {
+      const double a = smallest_angle(mesh.points[t.v[0]], mesh.points[t.v[1]], mesh.points[t.v[2]]);
+      if (a > 15 * kDegree) continue;
+      std::fprintf(stderr, "angle %.3g patch %d:", a / kDegree, t.patch);
+      for (int k = 0; k < 3; ++k) {
+        const auto v = t.v[k];
+        std::fprintf(stderr, " [%.2f %.2f %.2f curve %zu pin %d flat %d star %zu size %.2f edge %.4f]", mesh.points[v].x, mesh.points[v].y, mesh.points[v].z, mesh.curve[v].size(), mesh.pinned[v], mesh.flat[v], mesh.star[v].size(), size[v], norm(mesh.points[v] - mesh.points[t.v[(k + 1) % 3]]));
+      }
+      std::fprintf(stderr, "\n");
+    }
+  }
   return counts;
 }
 
