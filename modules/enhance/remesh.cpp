@@ -26,7 +26,7 @@ class Remesher {
   void round(int number) {
     regrid();if(number==0)tick("regrid");
     split_long();if(number==0)tick("split");
-    collapse_short(number == 0 ? 8 : 3, (number == 0 ? 8 : 15) * kDegree);if(number==0)tick("collapse");
+    collapse_short(number == 0 ? 8 : 3, (number == 0 ? 8 : 15) * kDegree, 1 / kSqrt2);if(number==0)tick("collapse");
     flip_all(2 * kDegree, number + 1 < o_.rounds, 2);if(number==0)tick("flip");
     relocate_all(number + 2 < o_.rounds ? 1 : 2);if(number==0)tick("relocate");
   }
@@ -34,7 +34,11 @@ class Remesher {
   void coarsen() {
     regrid();
     flip_all(2 * kDegree, false, 2);
-    collapse_short(4, 8 * kDegree);
+    for (double below : {0.25, 0.4, 0.55}) {  // the grid follows the size of the triangles
+      collapse_short(1, 8 * kDegree, below);
+      regrid();
+    }
+    collapse_short(2, 8 * kDegree, 1 / kSqrt2);
   }
 
   void fit(int passes) {
@@ -94,12 +98,12 @@ class Remesher {
     }
   }
 
-  void collapse_short(int passes, double floor_rad) {
+  void collapse_short(int passes, double floor_rad, double below) {
     for (int pass = 0; pass < passes; ++pass) {
       std::size_t done = 0;
-      for (const auto& [r, e] : ranked([](double x) { return x < 1 / kSqrt2; })) {
+      for (const auto& [r, e] : ranked([&](double x) { return x < below; })) {
         const auto [a, b] = e;
-        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= 1 / kSqrt2)
+        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= below)
           continue;
         // The one with fewer triangles goes first: it changes less.
         const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();

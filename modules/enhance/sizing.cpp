@@ -202,7 +202,8 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
       ++count;
     }
   TriangleGrid grid;
-  grid.build(mesh, mesh.points, std::max(0.5 * reach_mm, 1.5 * sum / std::max(count, 1.0)));
+  const double cell = std::max(0.1 * reach_mm, 1.5 * sum / std::max(count, 1.0));
+  grid.build(mesh, mesh.points, cell);
   std::vector<double> thin(mesh.points.size(), std::numeric_limits<double>::infinity());
   for_each_index(thin.size(), threads, [&](std::int32_t v) {
     if (mesh.star[v].empty() || !mesh.curve[v].empty() || mesh.pinned[v]) return;
@@ -212,19 +213,22 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
     const auto [below, above] = mesh.labels_of(mesh.triangles[mesh.star[v][0]].patch);
     for (int side = 0; side < 2; ++side) {
       if ((side == 0 ? below : above) == 0) continue;
-      const Vec3 from = mesh.points[v], d = (side == 0 ? -1.0 : 1.0) * n, to = from + reach_mm * d;
-      grid.query({from, to, to}, 0, [&](std::int32_t t) {
-        const auto& w = mesh.triangles[t].v;
-        if (w[0] == v || w[1] == v || w[2] == v) return true;
-        const Vec3 a = mesh.points[w[0]], e = mesh.points[w[1]] - a, f = mesh.points[w[2]] - a;
-        const Vec3 h = cross(d, f);
-        const double det = dot(e, h);
-        if (std::abs(det) < 1e-12 * norm(e) * norm(f)) return true;
-        const Vec3 s = from - a, q = cross(s, e);
-        const double u = dot(s, h) / det, x = dot(d, q) / det, l = dot(f, q) / det;
-        if (u >= 0 && x >= 0 && u + x <= 1 && l > 0 && l <= reach_mm) thin[v] = std::min(thin[v], l);
-        return true;
-      });
+      const Vec3 from = mesh.points[v], d = (side == 0 ? -1.0 : 1.0) * n;
+      for (double near = 0; near < std::min(reach_mm, thin[v]); near += cell) {  // piece by piece: most rays end soon
+        const Vec3 start = from + near * d, end = from + std::min(near + cell, reach_mm) * d;
+        grid.query({start, end, end}, 0, [&](std::int32_t t) {
+          const auto& w = mesh.triangles[t].v;
+          if (w[0] == v || w[1] == v || w[2] == v) return true;
+          const Vec3 a = mesh.points[w[0]], e = mesh.points[w[1]] - a, f = mesh.points[w[2]] - a;
+          const Vec3 h = cross(d, f);
+          const double det = dot(e, h);
+          if (std::abs(det) < 1e-12 * norm(e) * norm(f)) return true;
+          const Vec3 s = from - a, q = cross(s, e);
+          const double u = dot(s, h) / det, x = dot(d, q) / det, l = dot(f, q) / det;
+          if (u >= 0 && x >= 0 && u + x <= 1 && l > 0 && l <= reach_mm) thin[v] = std::min(thin[v], l);
+          return true;
+        });
+      }
     }
   });
   return thin;
