@@ -78,9 +78,6 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
       }
   }
   const auto& star = mesh_.star[gone];
-  double worst = 10, worst_old = 10;
-  for (std::int32_t t : star) worst_old = std::min(worst_old, angle(mesh_.triangles[t].v));
-  const double floor = std::min(floor_rad, worst_old);
   double longest_old = 0;
   added_.clear();
   for (std::int32_t t : star) {
@@ -89,13 +86,21 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
       if (w != gone) longest_old = std::max(longest_old, length(gone, w));
     if (v[0] == kept || v[1] == kept || v[2] == kept) continue;
     std::replace(v.begin(), v.end(), gone, kept);
-    worst = std::min(worst, angle(v));
-    if (worst < floor) return false;
     added_.push_back(v);
   }
   for (const auto& v : added_)
     for (std::int32_t w : v)
       if (w != kept && length(kept, w) > std::max(kSqrt2 * asked(kept, w), longest_old)) return false;
+  double worst = 10, worst_old = -1;
+  for (const auto& v : added_) {
+    worst = std::min(worst, angle(v));
+    if (worst >= floor_rad) continue;
+    if (worst_old < 0) {
+      worst_old = 10;
+      for (std::int32_t t : star) worst_old = std::min(worst_old, angle(mesh_.triangles[t].v));
+    }
+    if (worst < worst_old) return false;
+  }
   fan_normals(gone);
   std::size_t next = 0;
   double off = 1e300;

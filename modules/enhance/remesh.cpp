@@ -26,7 +26,7 @@ class Remesher {
   void round(int number) {
     regrid();if(number==0)tick("regrid");
     split_long();if(number==0)tick("split");
-    collapse_short(number == 0 ? 8 : 3, (number == 0 ? 8 : 15) * kDegree, 1 / kSqrt2);if(number==0)tick("collapse");
+    collapse_short(std::vector<double>(number == 0 ? 8 : 3, 1 / kSqrt2), (number == 0 ? 8 : 15) * kDegree);if(number==0)tick("collapse");
     flip_all(2 * kDegree, number + 1 < o_.rounds, 2);if(number==0)tick("flip");
     relocate_all(number + 2 < o_.rounds ? 1 : 2);if(number==0)tick("relocate");
   }
@@ -34,11 +34,7 @@ class Remesher {
   void coarsen() {
     regrid();
     flip_all(2 * kDegree, false, 2);
-    for (double below : {0.25, 0.4, 0.55}) {  // the grid follows the size of the triangles
-      collapse_short(1, 8 * kDegree, below);
-      regrid();
-    }
-    collapse_short(2, 8 * kDegree, 1 / kSqrt2);
+    collapse_short({0.25, 0.4, 0.55, 1 / kSqrt2, 1 / kSqrt2}, 8 * kDegree);
   }
 
   void fit(int passes) {
@@ -98,19 +94,34 @@ class Remesher {
     }
   }
 
-  void collapse_short(int passes, double floor_rad, double below) {
-    for (int pass = 0; pass < passes; ++pass) {
+  /// Collapses edges below 1 / sqrt 2 in stages, the shortest first; what was tried in vain is tried again only where the
+  /// surface has changed since.
+  void collapse_short(const std::vector<double>& stages, double floor_rad) {
+    std::vector<int> changed(mesh_.points.size(), 0);
+    std::vector<std::int32_t> around;
+    double tried = 0;
+    int pass = 0;
+    for (const double below : stages) {
+      if (++pass > 1 && below > tried) regrid();  // the grid follows the size of the triangles
       std::size_t done = 0;
       for (const auto& [r, e] : ranked([&](double x) { return x < below; })) {
         const auto [a, b] = e;
-        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= below)
-          continue;
+        if (r < tried && std::max(changed[a], changed[b]) + 1 < pass) continue;
+        if (mesh_.star[a].empty() || mesh_.star[b].empty() || !mesh_.has_edge(a, b) || ratio(e) >= below) continue;
         // The one with fewer triangles goes first: it changes less.
         const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();
-        done += ops_.collapse(a_first ? a : b, a_first ? b : a, floor_rad) ||
-                ops_.collapse(a_first ? b : a, a_first ? a : b, floor_rad);
+        const std::int32_t one = a_first ? a : b, two = a_first ? b : a;
+        std::int32_t kept = -1;
+        if (ops_.collapse(one, two, floor_rad)) kept = two;
+        else if (ops_.collapse(two, one, floor_rad)) kept = one;
+        if (kept < 0) continue;
+        ++done;
+        mesh_.neighbours(kept, around);
+        changed[kept] = pass;
+        for (std::int32_t v : around) changed[v] = pass;
       }
-      if (done * 500 < mesh_.points.size()) break;
+      if (below == tried && done * 500 < mesh_.points.size()) break;
+      tried = below;
     }
   }
 
