@@ -53,6 +53,8 @@ class Enhancement {
     result_.complex = stitched_;
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm), o_.threads);
     tick("ridges");
+    wall_reach_ = std::max(2 * o_.pixel_mm, o_.edge_length_mm.value_or(6 * o_.pixel_mm));
+    wall_ = wall_thickness(mesh, wall_reach_, o_.threads);
     if (o_.smooth_passes > 0) smooth_mesh(mesh);
     tick("smooth");
     progress_.advance(0.25);
@@ -123,10 +125,9 @@ class Enhancement {
     s.keep.sheet_angle_deg = o_.sheet_angle_deg;
     s.threads = o_.threads;
     // What is thin or small moves less: it has no volume to spare.
-    const std::vector<double> thin = wall_thickness(mesh, 2 * o_.pixel_mm, o_.threads);
-    for (std::size_t v = 0; v < thin.size(); ++v)
+    for (std::size_t v = 0; v < wall_.size(); ++v)
       s.share.push_back(
-          static_cast<float>(std::min({1.0, thin[v] / (1.5 * o_.pixel_mm), shell_[v] / (4 * o_.pixel_mm)})));
+          static_cast<float>(std::min({1.0, wall_[v] / (1.5 * o_.pixel_mm), shell_[v] / (4 * o_.pixel_mm)})));
     tick("thin");
     s.volumes = volumes_;
     s.volume_limit_mm = 0.2 * o_.pixel_mm;
@@ -139,6 +140,8 @@ class Enhancement {
     SizingOptions s;
     s.threads = o_.threads;
     s.shell_mm = shell_;
+    s.wall_mm = wall_;
+    s.wall_reach_mm = wall_reach_;
     s.gradation = o_.gradation;
     s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(0.5 * o_.pixel_mm);
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
@@ -258,6 +261,8 @@ class Enhancement {
   EnhanceResult result_;
   std::map<Label, double> volumes_;  // to be kept
   std::vector<double> shell_;        // of each vertex of the stitched complex: size of its smallest closed shell
+  std::vector<double> wall_;         // and how thick its walls are there, up to the reach
+  double wall_reach_ = 0;
   std::size_t shells_ = 0;
 };
 

@@ -73,13 +73,14 @@ void TriangleGrid::drop(std::size_t bucket, std::int32_t t) {
 
 void TriangleGrid::insert(std::int32_t t, const Corners3& corners) {
   if (static_cast<std::size_t>(t) >= boxes_.size()) boxes_.resize(t + 1 + t / 4);
-  boxes_[t] = box_of(corners, margins_.empty() ? 0.0 : margins_[t]);
+  Box& b = boxes_[t] = box_of(corners, margins_.empty() ? 0.0 : margins_[t]);
+  b.cell = {cell(b.low[0]), cell(b.low[1]), cell(b.low[2])};
   each_cell(boxes_[t], [&](std::size_t b) { push(b, t); });
 }
 
 void TriangleGrid::remove(std::int32_t t) {
   each_cell(boxes_[t], [&](std::size_t b) { drop(b, t); });
-  boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}};  // covers no cell
+  boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}, {}};  // covers no cell
 }
 
 Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg)

@@ -33,6 +33,7 @@ class TriangleGrid {
  private:
   struct Box {
     std::array<float, 3> low, high;
+    std::array<std::int32_t, 3> cell = {0, 0, 0};  ///< of the low corner
     bool meets(const Box& o) const {
       return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] && o.low[1] <= high[1] && low[2] <= o.high[2] &&
              o.low[2] <= high[2];
@@ -44,7 +45,11 @@ class TriangleGrid {
     std::array<std::int32_t, 6> items;
   };
   static Box box_of(const Corners3& c, double margin);
-  std::int32_t cell(float x) const { return static_cast<std::int32_t>(std::floor(x * inverse_)); }
+  std::int32_t cell(float x) const {
+    const float y = x * inverse_;
+    const auto i = static_cast<std::int32_t>(y);
+    return i - (static_cast<float>(i) > y);
+  }
   std::size_t bucket(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return (static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^
             static_cast<std::uint32_t>(k) * 83492791u) &
@@ -150,9 +155,7 @@ bool TriangleGrid::query(const Corners3& corners, double margin, Visit visit) co
             const Box& o = boxes_[t];
             if (!o.meets(b)) continue;
             // Reported only by the first cell that both are in.
-            if (std::max(cell(o.low[0]), lo[0]) != i || std::max(cell(o.low[1]), lo[1]) != j ||
-                std::max(cell(o.low[2]), lo[2]) != k)
-              continue;
+            if (std::max(o.cell[0], lo[0]) != i || std::max(o.cell[1], lo[1]) != j || std::max(o.cell[2], lo[2]) != k) continue;
             if (!visit(t)) return false;
           }
         }
@@ -170,8 +173,7 @@ void TriangleGrid::pairs(std::size_t first, std::size_t last, std::vector<std::i
       for (std::size_t y = 0; y < x; ++y) {
         const Box& o = boxes_[buffer[y]];
         if (!b.meets(o) || buffer[x] == buffer[y]) continue;
-        if (bucket(cell(std::max(b.low[0], o.low[0])), cell(std::max(b.low[1], o.low[1])), cell(std::max(b.low[2], o.low[2]))) ==
-            h)
+        if (bucket(std::max(b.cell[0], o.cell[0]), std::max(b.cell[1], o.cell[1]), std::max(b.cell[2], o.cell[2])) == h)
           visit(std::min(buffer[x], buffer[y]), std::max(buffer[x], buffer[y]));
       }
     }

@@ -364,7 +364,7 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
   for (int round = 0; round < options.rounds; ++round) {
     // The first round works on the stitched needles: sides of blocks among them would leave needles behind.
     in_blocks(round == 0, [&](Remesher& r) { r.round(round); });
-    tick("round");if (options.deviation_mm > 0 && round + 1 < options.rounds) shorten_where_off(mesh, size, reference, options);
+    tick("round");if (options.deviation_mm > 0 && round < 2) shorten_where_off(mesh, size, reference, options);
     tick("shorten");progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
   }
   in_blocks(false, [&](Remesher& r) { r.fit(options.fit_passes / 2); });

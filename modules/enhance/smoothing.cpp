@@ -14,18 +14,23 @@ struct Neighbours {
   std::vector<std::size_t> first;
   std::vector<std::int32_t> list;
 
-  explicit Neighbours(const ComplexMesh& mesh) {
-    std::vector<std::int32_t> around;
-    first.push_back(0);
-    for (std::int32_t v = 0; v < static_cast<std::int32_t>(mesh.points.size()); ++v) {
-      around.clear();
-      if (!mesh.star[v].empty() && !mesh.is_fixed(v)) {
-        if (mesh.curve[v].empty())
-          mesh.neighbours(v, around);
-        else
-          around.assign(mesh.curve[v].begin(), mesh.curve[v].end());
+  Neighbours(const ComplexMesh& mesh, int threads) {
+    std::vector<ShortList> of(mesh.points.size());
+    for_each_index(of.size(), threads, [&](std::size_t n) {
+      const auto v = static_cast<std::int32_t>(n);
+      if (mesh.star[v].empty() || mesh.is_fixed(v)) return;
+      if (!mesh.curve[v].empty()) {
+        of[v] = mesh.curve[v];
+        return;
       }
-      list.insert(list.end(), around.begin(), around.end());
+      for (std::int32_t t : mesh.star[v])
+        for (std::int32_t w : mesh.triangles[t].v)
+          if (w != v && std::find(of[v].begin(), of[v].end(), w) == of[v].end()) of[v].push_back(w);
+      std::sort(of[v].begin(), of[v].end());
+    });
+    first.push_back(0);
+    for (const ShortList& l : of) {
+      list.insert(list.end(), l.begin(), l.end());
       first.push_back(list.size());
     }
   }
@@ -41,7 +46,7 @@ struct Neighbours {
 /// Smoothed places without any guard, within the limits.
 std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOptions& o) {
   const std::size_t n = mesh.points.size();
-  const Neighbours around(mesh);
+  const Neighbours around(mesh, o.threads);
   std::vector<Vec3> p = mesh.points, q = p, b(n);
   const std::vector<Vec3>& origin = mesh.points;
   const auto limited = [&](std::size_t v, Vec3 to) {
