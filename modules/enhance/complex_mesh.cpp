@@ -249,6 +249,77 @@ bool ComplexMesh::can_collapse(std::int32_t gone, std::int32_t kept) const {
   return true;
 }
 
+/// True when the boundary of a label (by its number) is one closed fan at v, or does not come there.
+bool ComplexMesh::is_plain_for(std::int32_t v, std::int32_t side) const {
+  std::int32_t list[64], count = 0;
+  for (std::int32_t t : star[v]) {
+    const auto& s = sides(triangles[t].patch);
+    if (s[0] != side && s[1] != side) continue;
+    if (count == 64) return false;
+    list[count++] = t;
+  }
+  if (count == 0) return true;
+  // Walk round: over each edge at v exactly one other triangle of the label.
+  std::int32_t at = list[0];
+  const std::int32_t first = triangles[at].v[0] == v ? triangles[at].v[1] : triangles[at].v[0];
+  std::int32_t entry = first;
+  for (std::int32_t seen = 1;; ++seen) {
+    const std::int32_t edge = third(triangles[at].v, v, entry);
+    std::int32_t next = -1;
+    for (std::int32_t i = 0; i < count; ++i)
+      if (list[i] != at && holds(triangles[list[i]].v, edge)) {
+        if (next >= 0) return false;
+        next = list[i];
+      }
+    if (next < 0) return false;
+    if (next == list[0]) return edge == first && seen == count;
+    if (seen > count) return false;
+    at = next;
+    entry = edge;
+  }
+}
+
+bool ComplexMesh::can_merge(std::int32_t gone, std::int32_t kept) const {
+  if (pinned[gone] || pinned[kept] || !has_edge(gone, kept)) return false;
+  ShortList labels;
+  for (std::int32_t t : star[gone])
+    for (std::int32_t l : sides(triangles[t].patch))
+      if (!has(labels, l)) labels.push_back(l);
+  const auto belongs = [&](std::int32_t t, std::int32_t l) {
+    const auto& s = sides(triangles[t].patch);
+    return s[0] == l || s[1] == l;
+  };
+  for (std::int32_t l : labels) {
+    bool there = false;
+    for (std::int32_t t : star[kept]) there = there || belongs(t, l);
+    if (!is_plain_for(gone, l)) return false;
+    if (!there) continue;
+    if (!is_plain_for(kept, l)) return false;
+    ShortList apexes, near;
+    for (std::int32_t t : star[gone]) {
+      if (!belongs(t, l)) continue;
+      const auto& v = triangles[t].v;
+      if (holds(v, kept)) apexes.push_back(third(v, gone, kept));
+      for (std::int32_t w : v)
+        if (w != gone && w != kept && !has(near, w)) near.push_back(w);
+    }
+    if (apexes.size() != 2 || apexes[0] == apexes[1]) return false;
+    for (std::int32_t t : star[kept])
+      if (belongs(t, l))
+        for (std::int32_t w : triangles[t].v)
+          if (has(near, w) && !has(apexes, w)) return false;
+  }
+  for (std::int32_t t : star[gone]) {
+    if (holds(triangles[t].v, kept)) continue;
+    for (std::int32_t s : star[kept]) {
+      bool same = true;
+      for (std::int32_t w : triangles[t].v) same = same && (w == gone || holds(triangles[s].v, w));
+      if (same) return false;
+    }
+  }
+  return true;
+}
+
 std::vector<std::int32_t> ComplexMesh::collapse(std::int32_t gone, std::int32_t kept) {
   std::vector<std::int32_t> died;
   for (std::int32_t t : star[gone]) {
@@ -267,14 +338,16 @@ std::vector<std::int32_t> ComplexMesh::collapse(std::int32_t gone, std::int32_t 
     triangles[t].patch = -1;
   }
   star[gone].clear();
+  if (curve[gone].empty()) return died;
+  const bool both = !curve[kept].empty();
   for (std::int32_t c : curve[gone]) {
     drop(curve[c], gone);
-    if (c != kept) {
-      curve[c].push_back(kept);
-      curve[kept].push_back(c);
-    }
+    if (c == kept || has(curve[kept], c)) continue;
+    curve[c].push_back(kept);
+    curve[kept].push_back(c);
   }
   curve[gone].clear();
+  if (both && curve[kept].size() == 2) pinned[kept] = is_pinched(kept);
   return died;
 }
 
@@ -358,13 +431,16 @@ ComplexMesh ComplexMesh::part(const std::vector<std::int32_t>& numbers, std::siz
   out.labels_ = labels_;
   out.sides_ = sides_;
   vertices.clear();
-  for (std::int32_t t : numbers) vertices.insert(vertices.end(), triangles[t].v.begin(), triangles[t].v.end());
+  std::vector<std::int32_t> place(points.size(), -1);
+  for (std::int32_t t : numbers)
+    for (std::int32_t v : triangles[t].v)
+      if (place[v] < 0) {
+        place[v] = 0;
+        vertices.push_back(v);
+      }
   std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const auto local = [&](std::int32_t v) {
-    const auto it = std::lower_bound(vertices.begin(), vertices.end(), v);
-    return it != vertices.end() && *it == v ? static_cast<std::int32_t>(it - vertices.begin()) : -1;
-  };
+  for (std::size_t i = 0; i < vertices.size(); ++i) place[vertices[i]] = static_cast<std::int32_t>(i);
+  const auto local = [&](std::int32_t v) { return place[v]; };
   const std::size_t n = vertices.size();
   out.star.resize(n);
   out.curve.resize(n);

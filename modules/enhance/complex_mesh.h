@@ -79,6 +79,9 @@ class ComplexMesh {
   /// True when `gone` may be merged into `kept` without changing the topology of any sheet or curve
   /// (link condition; Dey, Edelsbrunner, Guha, Nekhayev 1999).
   bool can_collapse(std::int32_t gone, std::int32_t kept) const;
+  /// The same for any two neighbours, fixed ones too, asked of the labels: the boundary of each (the outside's as well) is
+  /// plain at both, and what holds both holds their edge, and no other common neighbours than the edge's two apexes.
+  bool can_merge(std::int32_t gone, std::int32_t kept) const;
   /// Returns the numbers of the triangles that died; those of `gone` that stay now hold `kept`.
   std::vector<std::int32_t> collapse(std::int32_t gone, std::int32_t kept);
 
@@ -107,6 +110,7 @@ class ComplexMesh {
   void mark_caps(double cap_area_mm2);
   void find_curves(int threads);
   bool is_pinched(std::int32_t v) const;
+  bool is_plain_for(std::int32_t v, std::int32_t side) const;
   std::vector<std::pair<Label, Label>> pairs_;
   std::vector<Label> labels_;
   std::vector<std::array<std::int32_t, 2>> sides_;

@@ -73,8 +73,8 @@ void TriangleGrid::drop(std::size_t bucket, std::int32_t t) {
 
 void TriangleGrid::insert(std::int32_t t, const Corners3& corners) {
   if (static_cast<std::size_t>(t) >= boxes_.size()) boxes_.resize(t + 1 + t / 4);
-  Box& b = boxes_[t] = box_of(corners, margins_.empty() ? 0.0 : margins_[t]);
-  b.cell = {cell(b.low[0]), cell(b.low[1]), cell(b.low[2])};
+  Box& box = boxes_[t] = box_of(corners, margins_.empty() ? 0.0 : margins_[t]);
+  box.cell = {cell(box.low[0]), cell(box.low[1]), cell(box.low[2])};
   each_cell(boxes_[t], [&](std::size_t b) { push(b, t); });
 }
 

@@ -6,9 +6,9 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kFold = 0.35;      // cosine: a triangle's normal against that of its old fan
 constexpr double kFlipBend = 0.82;  // cosine: two triangles whose edge may be flipped
 constexpr double kNeedle = 0.01;    // radians: a triangle with so small an angle is to go whatever takes its place
+constexpr double kMergeRel = 0.5;   // of the edge length: junctions that near may become one
 const double kSqrt2 = std::sqrt(2.0);
 
 Vec3 unit(const Vec3& a) {
@@ -67,9 +67,14 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
 }
 
 bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floor_rad) {
-  if (mesh_.is_held(gone) || mesh_.pinned[gone] || !mesh_.can_collapse(gone, kept)) return false;
+  if (mesh_.is_held(gone) || mesh_.pinned[gone]) return false;
+  if (!mesh_.can_collapse(gone, kept)) {
+    if (!lenient || mesh_.curve[gone].empty() || length(gone, kept) > kMergeRel * asked(gone, kept)) return false;
+    if (mesh_.flat[gone] && !(mesh_.flat[kept] && mesh_.points[gone].z == mesh_.points[kept].z)) return false;
+    if (!mesh_.can_merge(gone, kept)) return false;
+  }
   const Vec3 target = mesh_.points[kept], old = mesh_.points[gone];
-  const double asked_length = asked(gone, kept), reach = o_.deviation_rel * asked_length;
+  const double asked_length = asked(gone, kept), reach = reach_rel() * asked_length;
   if (!mesh_.curve[gone].empty()) {
     for (std::int32_t c : mesh_.curve[gone])
       if (c != kept) {
@@ -90,7 +95,7 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
   }
   for (const auto& v : added_)
     for (std::int32_t w : v)
-      if (w != kept && length(kept, w) > std::max(kSqrt2 * asked(kept, w), longest_old)) return false;
+      if (w != kept && length(kept, w) > std::max((lenient ? 2 : kSqrt2) * asked(kept, w), longest_old)) return false;
   double worst = 10, worst_old = -1;
   for (const auto& v : added_) {
     worst = std::min(worst, angle(v));
@@ -110,7 +115,7 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
     const auto& w = added_[next++];
     const Vec3 n = unit(mesh_.area_vector(w));
     const double along = dot(n, normals_[i]);
-    if (along < kFold && along < dot(unit(mesh_.area_vector(v)), normals_[i]) + 1e-9) return false;
+    if (along < fold() && along < dot(unit(mesh_.area_vector(v)), normals_[i]) + 1e-9) return false;
     const Vec3 d = old - nearest_on_triangle(old, mesh_.points[w[0]], mesh_.points[w[1]], mesh_.points[w[2]]);
     off = std::min(off, dot(d, d));
   }
@@ -157,7 +162,7 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   // Where the four corners are far from a plane, the flip changes the surface.
   const double out =
       std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
-  if (out > o_.deviation_rel * asked(a, b)) return false;
+  if (out > reach_rel() * asked(a, b)) return false;
   removed_ = {t[0], t[1]};
   added_ = {one, two};
   Change change;
@@ -201,7 +206,7 @@ double LocalOperations::smallest_round(std::int32_t v, const Vec3& at,
     const auto& t = mesh_.triangles[star[i]].v;
     Vec3 p[3];
     for (int k = 0; k < 3; ++k) p[k] = t[k] == v ? at : mesh_.points[t[k]];
-    if (dot(unit(cross(p[1] - p[0], p[2] - p[0])), fan_normals[i]) < kFold) return -1;
+    if (dot(unit(cross(p[1] - p[0], p[2] - p[0])), fan_normals[i]) < fold()) return -1;
     worst = std::min(worst, smallest_angle(p[0], p[1], p[2]));
   }
   return worst;
@@ -211,7 +216,8 @@ bool LocalOperations::relocate(std::int32_t v) {
   if (mesh_.is_held(v)) return false;
   fan_normals(v);
   const Vec3 here = mesh_.points[v];
-  const double now = smallest_round(v, here, normals_);
+  double now = 10;
+  for (std::int32_t t : mesh_.star[v]) now = std::min(now, angle(mesh_.triangles[t].v));
   std::vector<std::pair<double, Vec3>> places;
   const auto offer = [&](const Vec3& p) {
     const Vec3 q = drawn_to_reference(v, p);

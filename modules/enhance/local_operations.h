@@ -40,9 +40,14 @@ class LocalOperations {
 
   Guard guard;
   RemeshCounts counts;
+  /// For the last bad triangles: operations may leave the surface further, fold it more, and merge junctions a short edge
+  /// apart.
+  bool lenient = false;
   std::vector<std::int32_t>& hints;
 
  private:
+  double reach_rel() const { return (lenient ? 2.5 : 1) * o_.deviation_rel; }
+  double fold() const { return lenient ? 0.1 : 0.35; }  ///< cosine: a triangle's normal against that of its old fan
   double smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const;
   void fan_normals(std::int32_t v);
   int ideal_valence_error(std::int32_t v, int change) const;

@@ -46,7 +46,16 @@ class Remesher {
     regrid();
     flip_all(1 * kDegree, false, 3);
     for (int sweep = 0; sweep < sweeps; ++sweep)
-      if (improve_worst() == 0) break;
+      if (improve_worst(o_.good_angle_deg) == 0) break;
+  }
+
+  /// The last bad triangles, by stronger means.
+  void mend(int sweeps) {
+    regrid();
+    ops_.lenient = true;
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      if (improve_worst(o_.mend_angle_deg) == 0) break;
+    ops_.lenient = false;
   }
 
   RemeshCounts counts() const {
@@ -231,39 +240,36 @@ class Remesher {
     });
   }
 
-  std::size_t improve_worst() {
+  std::size_t improve_worst(double below_deg) {
+    const double limit = below_deg * kDegree;
     std::vector<std::pair<double, std::int32_t>> worst;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
       if (mesh_.alive(t)) {
         const double a = ops_.angle(mesh_.triangles[t].v);
-        if (a < o_.good_angle_deg * kDegree) worst.push_back({a, t});
+        if (a < limit) worst.push_back({a, t});
       }
     std::sort(worst.begin(), worst.end());
     std::size_t done = 0;
     for (const auto& [before, t] : worst) {
       if (!mesh_.alive(t)) continue;
       const double a = ops_.angle(mesh_.triangles[t].v);
-      if (a < o_.good_angle_deg * kDegree) done += improve(t, a);
+      if (a < limit) done += improve(t, a);
     }
     return done;
   }
 
   bool improve(std::int32_t t, double angle) {
-    auto v = mesh_.triangles[t].v;
-    int longest = 0, shortest = 0;
+    const auto v = mesh_.triangles[t].v;
     const auto side = [&](int k) { return ops_.length(v[k], v[(k + 1) % 3]); };
-    for (int k = 1; k < 3; ++k) {
-      if (side(k) > side(longest)) longest = k;
-      if (side(k) < side(shortest)) shortest = k;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const int e = (longest + k) % 3;
-      if (ops_.flip(v[e], v[(e + 1) % 3], 0.5 * kDegree, false)) return true;
-    }
-    const std::int32_t a = v[shortest], b = v[(shortest + 1) % 3];
-    if (side(shortest) < 0.8 * ops_.asked(a, b)) {
-      const double floor = std::min(angle + 2 * kDegree, 28 * kDegree);
-      if (ops_.collapse(a, b, floor) || ops_.collapse(b, a, floor)) return true;
+    std::array<int, 3> by_length = {0, 1, 2};
+    std::sort(by_length.begin(), by_length.end(), [&](int i, int j) { return side(i) < side(j); });
+    for (int k : {by_length[2], by_length[0], by_length[1]})
+      if (ops_.flip(v[k], v[(k + 1) % 3], 0.5 * kDegree, false)) return true;
+    const double floor = std::min(angle + 2 * kDegree, 28 * kDegree);
+    for (int i = 0; i < (ops_.lenient ? 3 : 1); ++i) {
+      const int k = by_length[i];
+      const std::int32_t a = v[k], b = v[(k + 1) % 3];
+      if (side(k) < 0.8 * ops_.asked(a, b) && (ops_.collapse(a, b, floor) || ops_.collapse(b, a, floor))) return true;
     }
     bool moved = false;
     for (std::int32_t w : v) moved = ops_.relocate(w) || moved;
@@ -373,6 +379,7 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
     r.finish(options.finish_sweeps);
   });
   tick("fit finish");in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });tick("finish");
+  in_blocks(true, [&](Remesher& r) { r.mend(options.mend_sweeps); });tick("mend");
   progress.advance(0.9);
   if (std::getenv("WORST")) {
     for (const MeshTriangle& t : mesh.triangles) {
