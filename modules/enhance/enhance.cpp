@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "enhance/tick.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
 #include "enhance/sizing.h"
@@ -41,7 +40,6 @@ class Enhancement {
       result_.complex = stitched_;
       return std::move(result_);
     }
-    tick("before");
     ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm, o_.threads);
     volumes_ = label_volumes(mesh);
     for (auto& [label, v] : volumes_) {
@@ -49,14 +47,11 @@ class Enhancement {
       if (wanted != o_.label_volume_mm3.end()) v = wanted->second;
     }
     shell_ = shell_sizes(mesh, &shells_);
-    tick("build, shells");
     result_.complex = stitched_;
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm), o_.threads);
-    tick("ridges");
     wall_reach_ = std::max(2 * o_.pixel_mm, o_.edge_length_mm.value_or(6 * o_.pixel_mm));
     wall_ = wall_thickness(mesh, wall_reach_, o_.threads);
     if (o_.smooth_passes > 0) smooth_mesh(mesh);
-    tick("smooth");
     progress_.advance(0.25);
     const std::vector<Vec3> smoothed = mesh.points;  // smoothing only moves points
     if (o_.remesh) {
@@ -105,7 +100,6 @@ class Enhancement {
     std::size_t shells = 0;
     shell_sizes(mesh, &shells);
     const std::size_t contacts = count_contacts(mesh, o_.threads);
-    tick("check");
     if (contacts == 0 && shells == shells_) {
       result_.level = level;
       return true;
@@ -128,7 +122,6 @@ class Enhancement {
     for (std::size_t v = 0; v < wall_.size(); ++v)
       s.share.push_back(
           static_cast<float>(std::min({1.0, wall_[v] / (1.5 * o_.pixel_mm), shell_[v] / (4 * o_.pixel_mm)})));
-    tick("thin");
     s.volumes = volumes_;
     s.volume_limit_mm = 0.2 * o_.pixel_mm;
     const SmoothingResult r = smooth(mesh, s);
@@ -219,12 +212,12 @@ class Enhancement {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
     if (o_.target_tets && !o_.edge_length_mm) coarsen(mesh, size);
-    tick("sizes");const double triangles = expected_triangles(mesh, size);
+    const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
     result_.expected_tets = static_cast<std::size_t>(kTetsPerTriangle * triangles);
     refuse_giants(triangles);
     const Reference reference(mesh, 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
-    tick("reference");RemeshOptions r;
+    RemeshOptions r;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
     // An edge length that was asked for gives way only where something would be cut off.
@@ -239,11 +232,21 @@ class Enhancement {
     result_.counts.refused_contact = c.refused_contact;
     result_.counts.refused_angle = c.refused_angle;
     result_.counts.refused_clearance = c.refused_clearance;
-    tick("remesh");MoveLimits keep;
-    keep.clearance_mm = 0.02 * std::min(o_.pixel_mm, o_.gap_mm);
+    restore(mesh, size, r.clearance_rel);
+  }
+
+  /// What remeshing and smoothing took from the labels' volumes comes back by small moves.
+  void restore(ComplexMesh& mesh, const std::vector<double>& size, double clearance_rel) {
+    MoveLimits keep;
+    keep.size_mm = &size;
+    keep.clearance_rel = clearance_rel;
     keep.sheet_angle_deg = o_.sheet_angle_deg;
     keep.corner_angle_deg = 25;
-    restore_volumes(mesh, volumes_, 0.1 * o_.pixel_mm, keep, o_.threads);
+    for (int pass = 0; pass < 4; ++pass) {
+      double worst = 0;
+      for (const auto& [label, v] : label_volumes(mesh)) worst = std::max(worst, std::abs(v / volumes_[label] - 1));
+      if (worst < 0.002 || restore_volumes(mesh, volumes_, 0.1 * o_.pixel_mm, keep, o_.threads).moved == 0) break;
+    }
   }
 
   void compare_volumes(const ComplexMesh& mesh) {

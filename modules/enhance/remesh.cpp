@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "enhance/blocks.h"
-#include "enhance/tick.h"
 #include "enhance/local_operations.h"
 #include "enhance/sizing.h"
 #include "enhance/smoothing.h"
@@ -24,11 +23,11 @@ class Remesher {
       : mesh_(mesh), size_(size), reference_(reference), o_(options), ops_(mesh, size, hints, reference, options) {}
 
   void round(int number) {
-    regrid();if(number==0)tick("regrid");
-    split_long();if(number==0)tick("split");
-    collapse_short(std::vector<double>(number == 0 ? 8 : 3, 1 / kSqrt2), (number == 0 ? 8 : 15) * kDegree);if(number==0)tick("collapse");
-    flip_all(2 * kDegree, number + 1 < o_.rounds, 2);if(number==0)tick("flip");
-    relocate_all(number + 2 < o_.rounds ? 1 : 2);if(number==0)tick("relocate");
+    regrid();
+    split_long();
+    collapse_short(std::vector<double>(number == 0 ? 8 : 3, 1 / kSqrt2), (number == 0 ? 8 : 15) * kDegree);
+    flip_all(2 * kDegree, number + 1 < o_.rounds, 2);
+    relocate_all(number + 2 < o_.rounds ? 1 : 2);
   }
 
   void coarsen() {
@@ -121,8 +120,10 @@ class Remesher {
         const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();
         const std::int32_t one = a_first ? a : b, two = a_first ? b : a;
         std::int32_t kept = -1;
-        if (ops_.collapse(one, two, floor_rad)) kept = two;
-        else if (ops_.collapse(two, one, floor_rad)) kept = one;
+        if (ops_.collapse(one, two, floor_rad))
+          kept = two;
+        else if (ops_.collapse(two, one, floor_rad))
+          kept = one;
         if (kept < 0) continue;
         ++done;
         mesh_.neighbours(kept, around);
@@ -366,33 +367,20 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
     join_blocks(mesh, size, hints, blocks);
   };
   for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });
-  tick("coarsen");
   for (int round = 0; round < options.rounds; ++round) {
     // The first round works on the stitched needles: sides of blocks among them would leave needles behind.
     in_blocks(round == 0, [&](Remesher& r) { r.round(round); });
-    tick("round");if (options.deviation_mm > 0 && round < 2) shorten_where_off(mesh, size, reference, options);
-    tick("shorten");progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
+    if (options.deviation_mm > 0 && round < 2) shorten_where_off(mesh, size, reference, options);
+    progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
   }
   in_blocks(false, [&](Remesher& r) { r.fit(options.fit_passes / 2); });
-  tick("fit");in_blocks(false, [&](Remesher& r) {
+  in_blocks(false, [&](Remesher& r) {
     r.fit(options.fit_passes - options.fit_passes / 2);
     r.finish(options.finish_sweeps);
   });
-  tick("fit finish");in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });tick("finish");
-  in_blocks(true, [&](Remesher& r) { r.mend(options.mend_sweeps); });tick("mend");
+  in_blocks(false, [&](Remesher& r) { r.finish(options.finish_sweeps / 2); });
+  in_blocks(true, [&](Remesher& r) { r.mend(options.mend_sweeps); });
   progress.advance(0.9);
-  if (std::getenv("WORST")) {
-    for (const MeshTriangle& t : mesh.triangles) {
-      const double a = smallest_angle(mesh.points[t.v[0]], mesh.points[t.v[1]], mesh.points[t.v[2]]);
-      if (a > 15 * kDegree) continue;
-      std::fprintf(stderr, "angle %.3g patch %d:", a / kDegree, t.patch);
-      for (int k = 0; k < 3; ++k) {
-        const auto v = t.v[k];
-        std::fprintf(stderr, " [%.2f %.2f %.2f curve %zu pin %d flat %d star %zu size %.2f edge %.4f]", mesh.points[v].x, mesh.points[v].y, mesh.points[v].z, mesh.curve[v].size(), mesh.pinned[v], mesh.flat[v], mesh.star[v].size(), size[v], norm(mesh.points[v] - mesh.points[t.v[(k + 1) % 3]]));
-      }
-      std::fprintf(stderr, "\n");
-    }
-  }
   return counts;
 }
 
