@@ -1,5 +1,8 @@
 #include "base/text.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace stackmesh {
 
 std::string lower_case(std::string_view text) {
@@ -11,6 +14,34 @@ std::string lower_case(std::string_view text) {
 
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+namespace {
+
+std::size_t letters_apart(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t corner = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = corner + (a[i] == b[j] ? 0 : 1);
+      corner = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_names(std::string_view name, const std::vector<std::string>& known, std::size_t most) {
+  std::vector<std::pair<std::size_t, std::size_t>> order;  // letters apart, place
+  for (std::size_t i = 0; i < known.size(); ++i) order.push_back({letters_apart(lower_case(name), lower_case(known[i])), i});
+  std::sort(order.begin(), order.end());
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, order.size()); ++i) text += (i > 0 ? ", " : "") + known[order[i].second];
+  return text;
 }
 
 }  // namespace stackmesh

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stackmesh {
 
@@ -8,5 +9,9 @@ namespace stackmesh {
 std::string lower_case(std::string_view text);
 
 bool ends_with(std::string_view text, std::string_view end);
+
+/// Those of the known names that are the most like a name that is not among them (by letters changed, added or left out), the best
+/// first, as "a, b, c".
+std::string nearest_names(std::string_view name, const std::vector<std::string>& known, std::size_t most = 6);
 
 }  // namespace stackmesh

@@ -18,6 +18,18 @@ std::string number(double v) {
   return text;
 }
 
+std::string where_of(const MaterialPlan& plan, Label label, const std::string& name) {
+  return plan.path + ", label " + std::to_string(label) + " (" + name + ")";
+}
+
+template <class Map>
+auto find(const Map& map, Label label, const std::string& name) {
+  auto at = map.find(std::to_string(label));
+  if (at == map.end()) at = map.find(name);
+  if (at == map.end()) at = map.find("*");
+  return at;
+}
+
 class Assigner {
  public:
   Assigner(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options)
@@ -27,7 +39,7 @@ class Assigner {
     SolverSets& sets = model_.sets;
     sets.modulus_mpa.assign(model_.mesh.tets.size(), 0);
     sets.density_t_mm3.assign(model_.mesh.tets.size(), 0);
-    if (plan_ != nullptr) check_names();
+    if (plan_ != nullptr) check_plan(*plan_, model_.labels, image_ != nullptr);
     else sets.placeholder_materials = true;
     for (std::size_t begin = 0; begin < model_.mesh.tets.size();) {  // tets are grouped by label
       const Label label = model_.mesh.labels[begin];
@@ -46,31 +58,7 @@ class Assigner {
       if (l.number == label) return l.name;
     return "label_" + std::to_string(label);
   }
-  std::string where(Label label) const { return plan_->path + ", label " + std::to_string(label) + " (" + name_of(label) + ")"; }
-
-  /// Every entry of the law must mean a label that is there.
-  void check_names() const {
-    const auto check = [&](const std::string& key, const std::string& what) {
-      if (key == "*") return;
-      std::string known;
-      for (const LabelInfo& l : model_.labels) {
-        if (key == std::to_string(l.number) || key == l.name) return;
-        known += (known.empty() ? "" : ", ") + std::to_string(l.number) + " (" + l.name + ")";
-      }
-      fail_input("the material law names " + what + " '" + key + "', which is not in the mesh", plan_->path,
-                 "the mesh has " + known.substr(0, 300) + "; use these, or \"*\" for all others");
-    };
-    for (const auto& [key, m] : plan_->labels) check(key, "label");
-    for (const auto& [key, m] : plan_->skins) check(key, "the skin of label");
-  }
-
-  template <class Map>
-  static auto find(const Map& map, Label label, const std::string& name) {
-    auto at = map.find(std::to_string(label));
-    if (at == map.end()) at = map.find(name);
-    if (at == map.end()) at = map.find("*");
-    return at;
-  }
+  std::string where(Label label) const { return where_of(*plan_, label, name_of(label)); }
 
   double volume(std::int32_t t) const { return std::abs(tet_point(model_.mesh, t, {0.25, 0.25, 0.25, 0.25}).determinant) / 6; }
 
@@ -83,10 +71,7 @@ class Assigner {
     if (plan_ == nullptr) {
       m.young_mpa = 1;
     } else {
-      const auto at = find(plan_->labels, label, row.name);
-      if (at == plan_->labels.end())
-        fail_input("a label has no material", where(label), "add it to \"labels\", or \"*\" for all others");
-      m = at->second;
+      m = find(plan_->labels, label, row.name)->second;  // check_plan() has seen to it
     }
     row.poisson = m.poisson;
     SolverSets& sets = model_.sets;
@@ -106,9 +91,6 @@ class Assigner {
   }
 
   void map(Label label, const LabelMaterial& m, const std::vector<std::int32_t>& tets, MaterialRow& row) {
-    if (image_ == nullptr)
-      fail_usage("label " + std::to_string(label) + " has a law, but there is no image to apply it to", "--materials " + plan_->path,
-                 "give the intensities with --image CT, or a constant E_MPa");
     used_image_ = true;
     check_cover(label, tets);
     SolverSets& sets = model_.sets;
@@ -238,6 +220,29 @@ class Assigner {
 };
 
 }  // namespace
+
+void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, bool has_image) {
+  const auto check = [&](const std::string& key, const std::string& what) {
+    if (key == "*") return;
+    std::string known;
+    for (const LabelInfo& l : labels) {
+      if (key == std::to_string(l.number) || key == l.name) return;
+      known += (known.empty() ? "" : ", ") + std::to_string(l.number) + " (" + l.name + ")";
+    }
+    fail_input("the material law names " + what + " '" + key + "', which is not in the mesh", plan.path,
+               "the mesh has " + known.substr(0, 300) + "; use these, or \"*\" for all others");
+  };
+  for (const auto& [key, m] : plan.labels) check(key, "label");
+  for (const auto& [key, m] : plan.skins) check(key, "the skin of label");
+  for (const LabelInfo& l : labels) {
+    const auto at = find(plan.labels, l.number, l.name);
+    if (at == plan.labels.end())
+      fail_input("a label has no material", where_of(plan, l.number, l.name), "add it to \"labels\", or \"*\" for all others");
+    if (!at->second.young_mpa && !has_image)
+      fail_usage("label " + std::to_string(l.number) + " has a law, but there is no image to apply it to", "--materials " + plan.path,
+                 "give the intensities with --image CT, or a constant E_MPa");
+  }
+}
 
 MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options) {
   return Assigner(model, plan, image, options).run();

@@ -30,6 +30,11 @@ struct MaterialOptions {
   bool ras = false;  ///< the mesh's frame is RAS; the image's is always LPS
 };
 
+/// Checks a plan against the labels (with their solver names) before anything long begins.
+/// @throws Error(input): a law that names a label that is not there, a label that it leaves without material; Error(usage): a law of
+/// one of the labels without an image
+void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, bool has_image);
+
 /// Gives every element its material: constant by label, or from the image's intensities by a law. Only voxels inside the label
 /// (less a margin) speak for it. The modulus of each element is kept, and binned for decks that need a material for each.
 /// Skins get theirs. Without a plan, every label gets a placeholder.

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "fem/boundary_faces.h"
 
 namespace stackmesh {
@@ -89,9 +90,15 @@ class Loader {
 
  private:
   [[noreturn]] void missing(const std::string& name) const {
-    std::string known;
-    for (const NodeSet& s : model_.sets.node_sets) known += (known.empty() ? "" : ", ") + s.name;
-    fail_input("the load case names set '" + name + "', which the model does not have", path_ + ", load_case", "its sets are " + known.substr(0, 600));
+    std::vector<std::string> known;
+    for (const NodeSet& s : model_.sets.node_sets) known.push_back(s.name);
+    const std::string nearest = "of its " + std::to_string(known.size()) + " sets the nearest are " + nearest_names(name, known);
+    for (const LabelInfo& l : model_.labels)
+      for (const std::string end : {"low", "high"})
+        if (name == l.name + "_cap_" + end)
+          fail_input("the load case names set '" + name + "', but label " + std::to_string(l.number) + " has no flat " + end + " end", path_ + ", load_case",
+                     "mesh with --caps flat, choose its end with --select, or another set; " + nearest);
+    fail_input("the load case names set '" + name + "', which the model does not have", path_ + ", load_case", nearest);
   }
   const NodeSet& node_set(const std::string& name) const {
     for (const NodeSet& s : model_.sets.node_sets)

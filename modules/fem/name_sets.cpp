@@ -209,7 +209,12 @@ class Namer {
     const auto place = [&](std::int32_t f) {
       return faces_[f].out == 0 ? name_of(faces_[f].in) + "_outer" : name_of(faces_[f].in) + "_to_" + name_of(faces_[f].out);
     };
-    const SelectionContext context = {model_.mesh, faces_, model_.labels, find, place, o_.ras};
+    const auto names = [&] {
+      std::vector<std::string> all;
+      for (const FaceList& l : lists_) all.push_back(l.name);
+      return all;
+    };
+    const SelectionContext context = {model_.mesh, faces_, model_.labels, find, names, place, o_.ras};
     for (const std::string& text : o_.selections) {
       const auto [name, list] = select_faces(text, context);
       if (taken_.count(lower_case(name)) > 0)

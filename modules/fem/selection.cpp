@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "fem/label_table.h"
 
 namespace stackmesh {
@@ -151,7 +152,7 @@ Criterion make(const std::string& word, const SelectionContext& c, const std::st
     out.miss = [=, &faces](std::int32_t f) { return faces[f].in == label ? 0.0 : 1.0; };
   } else if (kind == "in") {
     const std::vector<std::int32_t>* set = c.set(rest);
-    if (set == nullptr) fail_input("set '" + rest + "' is not in the model", "--select " + text, "the report lists all sets under fem");
+    if (set == nullptr) fail_input("set '" + rest + "' is not in the model", "--select " + text, "the nearest are " + nearest_names(rest, c.set_names()));
     std::vector<char> member(faces.size(), 0);
     for (const std::int32_t f : *set) member[f] = 1;
     out.can_rank = false;
@@ -162,23 +163,40 @@ Criterion make(const std::string& word, const SelectionContext& c, const std::st
   return out;
 }
 
-}  // namespace
+struct Selection {
+  std::string name;
+  std::vector<Criterion> criteria;
+  bool sided = false;  ///< it says whose faces it means
+};
 
-std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string& text, const SelectionContext& c) {
+Selection read_selection(const std::string& text, const SelectionContext& c) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) fail_usage("a selection has no name", "--select " + text, grammar);
-  const std::string name = text.substr(0, equals);
+  Selection s;
+  const std::string& name = s.name = text.substr(0, equals);
   if (sanitised_name(name) != name || name.size() > 60)
     fail_usage("'" + name + "' is no name that solvers take", "--select " + text, "use letters, digits and _, a letter first, at most 60");
-  std::vector<Criterion> criteria;
-  bool sided = false;
   std::size_t begin = equals + 1;
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find('&', begin), text.size());
-    criteria.push_back(make(text.substr(begin, end - begin), c, text));
-    sided = sided || criteria.back().kind == "of" || criteria.back().kind == "in";
+    s.criteria.push_back(make(text.substr(begin, end - begin), c, text));
+    s.sided = s.sided || s.criteria.back().kind == "of" || s.criteria.back().kind == "in";
     begin = end + 1;
   }
+  return s;
+}
+
+}  // namespace
+
+void check_selection(const std::string& text, const std::vector<LabelInfo>& labels) {
+  const TetMesh no_mesh;
+  const std::vector<BoundaryFace> no_faces;
+  const std::vector<std::int32_t> any_set;
+  read_selection(text, {no_mesh, no_faces, labels, [&](const std::string&) { return &any_set; }, {}, {}, false});
+}
+
+std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string& text, const SelectionContext& c) {
+  const auto [name, criteria, sided] = read_selection(text, c);
   std::vector<std::int32_t> chosen, open;
   for (std::size_t i = 0; i < c.faces.size(); ++i) {
     const auto f = static_cast<std::int32_t>(i);

@@ -13,6 +13,7 @@ struct SelectionContext {
   const std::vector<BoundaryFace>& faces;
   const std::vector<LabelInfo>& labels;                                     ///< numbers and names
   std::function<const std::vector<std::int32_t>*(const std::string&)> set;  ///< faces of a named set; none: nullptr
+  std::function<std::vector<std::string>()> set_names;                      ///< of all sets, for an error
   std::function<std::string(std::int32_t)> place_of;                        ///< names where a face lies, for an error
   bool ras = false;  ///< the mesh's frame is RAS
 };
@@ -26,5 +27,9 @@ struct SelectionContext {
 /// @throws Error(usage) for a text that is no selection, Error(input) for none selected (naming the nearest candidate), a label
 /// or set that is not there, a markups file that cannot be read
 std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string& text, const SelectionContext& context);
+
+/// Reads a selection as select_faces() does, before there are faces; the sets that it names are not looked for.
+/// @param labels numbers and names, as solvers have them
+void check_selection(const std::string& text, const std::vector<LabelInfo>& labels);
 
 }  // namespace stackmesh

@@ -77,7 +77,7 @@ bool choose(const std::vector<LabelInfo>& labels, const std::string& item, std::
 
 }  // namespace
 
-std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, const std::string& text) {
+std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, const std::string& text, const std::string& option) {
   std::vector<std::size_t> chosen;
   if (text.empty()) {
     for (std::size_t i = 1; i < labels.size(); ++i) chosen.push_back(i);
@@ -88,15 +88,15 @@ std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, c
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string item = text.substr(begin, end - begin);
     begin = end + 1;
-    if (item.empty()) fail_usage("empty entry in a list of labels", "'" + text + "'", "write --label 1,4,7-9,NAME");
+    if (item.empty()) fail_usage("empty entry in a list of labels", option + " '" + text + "'", "write labels as 1,4,7-9,NAME");
     if (!choose(labels, item, chosen))
-      fail_input("label '" + item + "' is not in the input", "--label " + text, "choose among: " + list_labels(labels));
+      fail_input("label '" + item + "' is not in the input", option + " " + text, "choose among: " + list_labels(labels));
   }
   return chosen;
 }
 
-std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, const std::string& text) {
-  std::vector<std::size_t> chosen = labels_in_order(labels, text);
+std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, const std::string& text, const std::string& option) {
+  std::vector<std::size_t> chosen = labels_in_order(labels, text, option);
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }

@@ -10,6 +10,7 @@
 #include "fem/join_parts.h"
 #include "fem/label_table.h"
 #include "fem/load_case.h"
+#include "fem/selection.h"
 #include "fem/split_parts.h"
 #include "image/read_image.h"
 #include "meshio/read_mesh.h"
@@ -41,7 +42,19 @@ class FemRun {
 
  private:
   RunReport from_labels() {
-    return run_mesh(o_.mesh, progress_, [&](MeshProduct product, RunReport& report, AtomicFiles& files) { model(std::move(product), report, files); });
+    return run_mesh(
+        o_.mesh, progress_, [&](MeshProduct product, RunReport& report, AtomicFiles& files) { model(std::move(product), report, files); },
+        [&](const std::vector<LabelInfo>& labels) { check_labels(labels); });
+  }
+
+  /// What names labels is checked as soon as they are known: a mistake is told before anything is meshed.
+  void check_labels(const std::vector<LabelInfo>& labels) const {
+    if (plan_) check_plan(*plan_, solver_names(labels), image_.has_value());
+    std::vector<LabelInfo> known = {{0, ""}};
+    known.insert(known.end(), labels.begin(), labels.end());
+    for (const auto& [name, text] : o_.parts) resolve_labels(known, text, "--parts");
+    for (const auto& [text, thickness] : o_.skins) resolve_labels(known, text, "--skin");
+    for (const std::string& text : o_.selections) check_selection(text, solver_names(labels));
   }
 
   RunReport from_mesh(const std::string& path) {
@@ -55,6 +68,7 @@ class FemRun {
     check_outputs();
     MeshProduct product;
     clock.run("read", [&] { product = read(path, report); });
+    check_labels(product.labels);
     clock.run("validate", [&] { check(product, report); });
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
       for (Vec3& p : product.mesh.points) p = {-p.x, -p.y, p.z};

@@ -27,16 +27,18 @@ class MeshRun {
   MeshRun(const MeshRunOptions& options, Progress& progress, const ModelStage& model)
       : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
-  RunReport run() {
+  RunReport run(const LabelsStage& labels) {
     check_outputs();
     report_.command = o_.command;
     report_.version = o_.version;
     report_.options = o_.option_texts;
     report_.warnings = o_.notes;
     clock_.run("read", [&] { read(); });
+    if (labels) labels(input_.labels);
     clock_.run("contours", [&] { make_sections(); });
     clock_.run("stitch", [&] { stitch(); });
     if (o_.enhance && !is_too_large()) {
+      refuse_too_fine();
       enhance();
     } else {
       clock_.run("validate", [&] { take_stitched(judge(surface_, o_.threads)); });
@@ -154,7 +156,7 @@ class MeshRun {
     std::vector<LabelInfo> known = {{0, ""}};
     known.insert(known.end(), input_.labels.begin(), input_.labels.end());
     for (const auto& [text, caps] : o_.label_caps_text)
-      for (std::size_t k : resolve_labels(known, text)) options.label_caps[known[k].number] = caps;
+      for (std::size_t k : resolve_labels(known, text, "--caps")) options.label_caps[known[k].number] = caps;
     StitchResult result = stitch_sections(stack_, options, progress_);
     for (const std::string& w : result.warnings) warn(w);
     surface_ = std::move(result.complex);
@@ -183,6 +185,19 @@ class MeshRun {
     return true;
   }
 
+  /// An edge length that is far too small is told before the surface is remeshed, which would take as long as it is small.
+  void refuse_too_fine() const {
+    if (o_.target != Target::volume || !o_.enhancement.edge_length_mm) return;
+    const double edge = *o_.enhancement.edge_length_mm, inner = 2 * edge;
+    double area = 0, volume = 0;  // of both sides; stitched steps have up to half as much again as the surface that comes of them
+    for (const InterfaceTriangle& t : surface_.triangles) {
+      const Vec3 &a = surface_.points[t.v[0]], &b = surface_.points[t.v[1]], &c = surface_.points[t.v[2]];
+      area += ((t.below != 0) + (t.above != 0)) * 0.5 * norm(cross(b - a, c - a)) / 1.5;
+      volume += ((t.below != 0) - (t.above != 0)) * dot(a, cross(b, c)) / 6;
+    }
+    refuse_too_many(1.5 * area / (0.433 * edge * edge) + std::abs(volume) / (0.12 * inner * inner * inner));
+  }
+
   /// What the exact checks say of a surface.
   struct Judgement {
     InterfaceComplex world;  // in the coordinates that will be written
@@ -208,7 +223,7 @@ class MeshRun {
     std::vector<LabelInfo> known = {{0, ""}};
     known.insert(known.end(), input_.labels.begin(), input_.labels.end());
     for (const auto& [text, edge_mm] : o_.label_edges_text)
-      for (std::size_t k : resolve_labels(known, text)) options.label_edge_mm[known[k].number] = edge_mm;
+      for (std::size_t k : resolve_labels(known, text, "--edge-length")) options.label_edge_mm[known[k].number] = edge_mm;
     for (const LabelReport& row : report_.labels)
       if (row.input_volume_mm3) options.label_volume_mm3[row.label] = *row.input_volume_mm3;
     EnhanceResult result;
@@ -557,8 +572,8 @@ class MeshRun {
 
 }  // namespace
 
-RunReport run_mesh(const MeshRunOptions& options, Progress& progress, const ModelStage& model) {
-  return MeshRun(options, progress, model).run();
+RunReport run_mesh(const MeshRunOptions& options, Progress& progress, const ModelStage& model, const LabelsStage& labels) {
+  return MeshRun(options, progress, model).run(labels);
 }
 
 }  // namespace stackmesh

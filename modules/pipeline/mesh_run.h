@@ -59,9 +59,12 @@ struct MeshProduct {
 /// Takes the place of writing volume files: gets the mesh, adds to the report, writes to the files.
 using ModelStage = std::function<void(MeshProduct product, RunReport& report, AtomicFiles& files)>;
 
+/// Is told the labels that will be meshed as soon as they are read, and may refuse by an Error.
+using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
+
 /// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write. Everything
 /// that is written appears whole or not at all. With `model`, the verified volume goes there instead of into files.
 /// @throws Error: input, output, usage; no_result after the report (and the offending triangles) were written.
-RunReport run_mesh(const MeshRunOptions& options, Progress& progress, const ModelStage& model = {});
+RunReport run_mesh(const MeshRunOptions& options, Progress& progress, const ModelStage& model = {}, const LabelsStage& labels = {});
 
 }  // namespace stackmesh

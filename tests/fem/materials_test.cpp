@@ -252,7 +252,9 @@ TEST_F(BadInput, IsOneClearLineAndLeavesNothing) {
   refuses(3, "block.vtu --materials law.json", {"label 2", "no material"});
   refuses(3, "block.vtu --select a=box:50,50,50,60,60,60", {"selection 'a' is empty", "nearest"});
   refuses(2, "block.vtu --select a=ball:1,1,1", {"unknown criterion"});
-  refuses(3, "block.vtu --parts A=1 B=9", {"label '9'"});
+  refuses(3, "block.vtu --select a=in:label_1_oter", {"set 'label_1_oter'", "the nearest are label_1_outer, "});
+  refuses(3, "block.vtu --parts A=1 B=9", {"label '9'", "--parts 9"});
+  refuses(3, "block.vtu --skin 9=0.3", {"label '9'", "--skin 9"});
   refuses(2, "block.vtu --parts A", {"NAME=LABELS"});
   refuses(2, "block.vtu --skin 1=0", {"not above 0"});
   refuses(3, "block.vtu --skin 1=0.3 --materials " + law(R"("*": {"E_MPa": 5, "poisson": 0.3})"), {"skin", "no material"});
@@ -261,6 +263,39 @@ TEST_F(BadInput, IsOneClearLineAndLeavesNothing) {
   refuses(2, "block.vtu --materials law.json", {"no image"});
   refuses(3, "block.vtu --materials law.json --image nowhere.nii.gz", {"does not exist"});
   refuses(3, "nothing.vtu", {"nothing.vtu"});
+}
+
+TEST_F(BadInput, SetsOfALoadCaseThatAreNotThereNameTheNearest) {
+  const auto fixed = [&](const std::string& set) {
+    return write("law.json", std::string(kHead) + R"("labels": {"*": {"E_MPa": 5, "poisson": 0.3}}, "load_case": {"fixed": [{"set": ")" + set + "\"}]}}");
+  };
+  fixed("label_2_cap_lo");
+  refuses(3, "block.vtu --materials law.json", {"'label_2_cap_lo', which the model does not have", "the nearest are label_2_cap_low, "});
+  TetMesh wedge = block(2, 2, 2, {4, 4, 4});
+  for (Vec3& p : wedge.points) p.z += 0.4 * p.x;  // no end is level
+  write_mesh("wedge.vtu", wedge);
+  fixed("label_1_cap_high");
+  refuses(3, "wedge.vtu --materials law.json", {"label 1 has no flat high end", "--caps flat", "--select"});
+}
+
+TEST_F(BadInput, MistakesAreToldBeforeAnythingIsMeshed) {
+  const std::string labels = "'" STACKMESH_TESTDATA "/femur.nii.gz' --progress plain -o refused.inp ";
+  const auto early = [&](int code, const std::string& arguments, const std::string& part) {
+    EXPECT_EQ(run("'" STACKMESH_PROGRAM "' fem " + labels + arguments, "fem"), code) << read("fem.log");
+    EXPECT_NE(read("fem.log").find(part), std::string::npos) << read("fem.log");
+    EXPECT_EQ(read("fem.log").find("contours "), std::string::npos) << read("fem.log");
+  };
+  law(R"("*": {"E_MPa": 5, "poisson": 0.3}, "7": {"E_MPa": 5, "poisson": 0.3})");
+  early(3, "--materials law.json", "label '7', which is not in the mesh");
+  law(R"("1": {"E_MPa": 5, "poisson": 0.3})");
+  early(3, "--materials law.json", "label 2 (label_2)");
+  law(R"("*": {"law": "line", "poisson": 0.3})");
+  early(2, "--materials law.json", "no image");
+  early(3, "--parts A=1 B=9", "--parts 9");
+  early(3, "--skin 9=1", "--skin 9");
+  early(2, "--select a=ball:1,1,1", "unknown criterion");
+  early(3, "--select a=of:5", "label '5'");
+  early(3, "--select a=points:nowhere.mrk.json,5", "nowhere.mrk.json");
 }
 
 TEST_F(BadInput, ElementsInsideOutAreListed) {

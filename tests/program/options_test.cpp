@@ -442,6 +442,9 @@ TEST_F(Options, OrderTwoWritesTenNodeTetsThatOthersRead) {
 
 TEST_F(Options, TenMillionTetrahedraAreAskedAbout) {
   fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--max-volume", "1e-6"}, {"million tetrahedra", "--yes"});
+  // An edge length is refused before the surface is made of it.
+  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--edge-length", "0.1"}, {"million tetrahedra", "--yes"});
+  fails(2, {"fem", testdata("border.nii.gz"), "-o", out("a.inp"), "--edge-length", "0.1"}, {"million tetrahedra", "--yes"});
 }
 
 TEST_F(Options, OrderTwoIsRefusedForMedit) {
