@@ -455,7 +455,10 @@ class Filler {
       volume::ImproveOptions improve;
       improve.goal_deg = *options_.improve_deg;
       volume::ImproveCounts counts;
-      const volume::Finding finding = volume::label_tets(volume::improve_tets(mesh, complex_.points.size(), improve, counts), mesh);
+      improve.threads = options_.threads;
+      improve.deadline = deadline_;
+      volume::improve_tets(mesh, complex_.points.size(), improve, counts);
+      const volume::Finding finding = volume::check_filled(mesh, options_.threads);
       if (!finding.message.empty()) fail_internal("the improved tets are invalid: " + finding.message, name);
       improved = ", improved from " + std::to_string(before);
     }

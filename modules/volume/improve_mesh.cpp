@@ -198,8 +198,8 @@ void ImproveMesh::drop_last_point() {
   tet_of_.pop_back();
 }
 
-void ImproveMesh::give_back(TetMesh& mesh, std::vector<std::int32_t>& neighbours) const {
-  std::vector<std::int32_t> number(points.size(), -1), id(tets.size(), -1);
+void ImproveMesh::give_back(TetMesh& mesh) const {
+  std::vector<std::int32_t> number(points.size(), -1);
   for (const Tet& t : tets)
     if (t.alive())
       for (const std::int32_t v : t.v) number[v] = 0;
@@ -214,18 +214,12 @@ void ImproveMesh::give_back(TetMesh& mesh, std::vector<std::int32_t>& neighbours
   }
   mesh.tets.clear();
   mesh.labels.clear();
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    if (!tets[t].alive()) continue;
-    id[t] = static_cast<std::int32_t>(mesh.tets.size());
-    mesh.tets.push_back(tets[t].v);
+  for (const Tet& t : tets) {
+    if (!t.alive()) continue;
+    mesh.tets.push_back(t.v);
     for (std::int32_t& v : mesh.tets.back()) v = number[v];
-    mesh.labels.push_back(tets[t].label);
+    mesh.labels.push_back(t.label);
   }
-  neighbours.clear();
-  neighbours.reserve(4 * mesh.tets.size());
-  for (const Tet& t : tets)
-    if (t.alive())
-      for (const std::int32_t n : t.n) neighbours.push_back(n < 0 ? -1 : id[n]);
 }
 
 }  // namespace stackmesh::volume

@@ -51,9 +51,8 @@ class ImproveMesh {
   void mark(std::int32_t t) { stamps_[t] = stamp_; }
   bool marked(std::int32_t t) const { return stamps_[t] == stamp_; }
 
-  /// Back to plain arrays: live tets in their order, points that no tet uses dropped from `kept` on. Neighbours, four a
-  /// tet, are those of label_tets().
-  void give_back(TetMesh& mesh, std::vector<std::int32_t>& neighbours) const;
+  /// Back to plain arrays: live tets in their order, points that no tet uses dropped from `kept` on.
+  void give_back(TetMesh& mesh) const;
 
  private:
   struct Face {

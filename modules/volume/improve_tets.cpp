@@ -7,14 +7,18 @@
 
 #include "volume/improve_mesh.h"
 #include "volume/improve_moves.h"
+#include "volume/improve_pieces.h"
+#include "volume/tet_quality.h"
 
 namespace stackmesh::volume {
 namespace {
 
+constexpr double kRadians = 3.14159265358979323846 / 180;
+
 class Improver {
  public:
   Improver(ImproveMesh& mesh, const ImproveOptions& options, ImproveCounts& counts)
-      : m_(mesh), moves_(mesh), goal_(std::sin(options.goal_deg * 3.14159265358979323846 / 180)), options_(options), c_(counts) {}
+      : m_(mesh), moves_(mesh), goal_(std::sin(options.goal_deg * kRadians)), options_(options), c_(counts) {}
 
   void run() {
     double sum_before = badness();
@@ -23,7 +27,10 @@ class Improver {
       if (bad.empty()) break;
       ++c_.passes;
       std::size_t done = 0;
-      for (const std::int32_t t : bad) done += mend(t, pass);
+      for (std::size_t i = 0; i < bad.size(); ++i) {
+        if (i % 64 == 0 && std::chrono::steady_clock::now() >= options_.deadline) return;
+        done += mend(bad[i], pass);
+      }
       const double sum = badness();
       if (done == 0 || sum > 0.995 * sum_before) {
         if (pass >= 3) break;
@@ -79,14 +86,29 @@ class Improver {
 
 }  // namespace
 
-RawTets improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options, ImproveCounts& counts) {
-  ImproveMesh work(mesh, kept);
-  Improver(work, options, counts).run();
-  RawTets raw;
-  work.give_back(mesh, raw.neighbours);
-  raw.corners.reserve(4 * mesh.tets.size());
-  for (const auto& t : mesh.tets) raw.corners.insert(raw.corners.end(), t.begin(), t.end());
-  return raw;
+void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options, ImproveCounts& counts) {
+  constexpr std::size_t kPiece = 20000;  // tets
+  int pieces = 1;
+  while (mesh.tets.size() / static_cast<std::size_t>(pieces) > 2 * kPiece) pieces *= 2;
+  const auto change = [&](const std::vector<std::int32_t>& piece, std::size_t count) {
+    std::vector<ImproveCounts> done(count);
+    std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads,
+                                             [&](std::size_t i, ImproveMesh& work) { Improver(work, options, done[i]).run(); });
+    for (const ImproveCounts& d : done) {
+      counts.moved += d.moved, counts.edges += d.edges, counts.faces += d.faces;
+      counts.collapsed += d.collapsed, counts.inserted += d.inserted;
+      counts.passes = std::max(counts.passes, d.passes);
+    }
+    return shared;
+  };
+  const std::vector<char> cut = change(cut_into_pieces(mesh, pieces), static_cast<std::size_t>(pieces));
+  if (pieces == 1) return;
+  const double goal = std::sin(options.goal_deg * kRadians);
+  std::vector<char> bad(mesh.points.size(), 0);
+  for (const auto& t : mesh.tets)
+    if ((cut[t[0]] || cut[t[1]] || cut[t[2]] || cut[t[3]]) && tet_quality(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < goal)
+      for (const std::int32_t v : t) bad[v] = 1;
+  change(grow(mesh, std::move(bad), 2), 1);
 }
 
 }  // namespace stackmesh::volume

@@ -1,14 +1,16 @@
 #pragma once
+#include <chrono>
 #include <cstddef>
 
 #include "model/tet_mesh.h"
-#include "volume/label_tets.h"
 
 namespace stackmesh::volume {
 
 struct ImproveOptions {
   double goal_deg = 24;  ///< tets with a dihedral angle below it (or, at the other end, above 180 - goal / 0.6) are worked on
   int passes = 10;       ///< at most
+  int threads = 0;       ///< 0: all of the machine; the result does not depend on it
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();  ///< then the mesh is left as it is by then
 };
 
 struct ImproveCounts {
@@ -20,7 +22,7 @@ struct ImproveCounts {
 /// edges and faces are exchanged, points merged and inserted. Points before `kept`, and all of mesh.faces, stay as they
 /// are. No change makes the worst of the tets that it touches worse, and each keeps all tets positive (exactly).
 ///
-/// @return the tets as label_tets() takes them; mesh.points is replaced to fit, mesh.tets and labels too
-RawTets improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options, ImproveCounts& counts);
+/// A large mesh is cut into pieces that are improved side by side, then the tets along the cuts.
+void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options, ImproveCounts& counts);
 
 }  // namespace stackmesh::volume

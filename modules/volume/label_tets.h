@@ -32,6 +32,10 @@ struct RawTets {
 /// agree. Tets of the background are dropped.
 Finding label_tets(RawTets raw, TetMesh& mesh);
 
+/// Is every tet positive (exactly), and every face of a tet either shared with one tet of its label, or one of mesh.faces with that
+/// label on that side? Is every side of mesh.faces that has a label the face of a tet?
+Finding check_filled(const TetMesh& mesh, int threads);
+
 struct Volume {
   double mm3 = 0;
   double terms = 0;  // sum of the magnitudes that were added: the scale of its rounding
