@@ -27,7 +27,8 @@ struct MeshArguments {
   std::vector<std::string> outputs, reports, names;
   std::string caps = "auto", space = "lps";
   double snap_mm = 0, timeout_s = 600;
-  double max_volume = 0, radius_edge = 0, dihedral = 0;
+  std::string max_volume;
+  double radius_edge = 0, dihedral = 0;
   int order = 1;
   bool strict = false, per_label = false, msh2 = false, yes = false;
   std::string return_parameters;  // of 3D Slicer
@@ -60,7 +61,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_flag(target == Target::volume ? "--no-enhance" : "--raw,--no-enhance", e.off, "the stitched surface as it is");
   const std::vector<CLI::Option*> of_volumes = {
       command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str(),
-      command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3")->check(positive),
+      command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3; per label 5=2.0,9=1.0"),
       command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
       command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
       command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")->check(CLI::Range(1, 2))->capture_default_str(),
@@ -91,7 +92,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
   o.order = a.order;
   o.many_tets = a.yes;
-  if (a.max_volume > 0) o.fill.max_volume_mm3 = a.max_volume;
+  if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.fill.max_volume_mm3);
   if (a.radius_edge > 0) o.fill.radius_edge = a.radius_edge;
   if (a.dihedral > 0) o.fill.dihedral_deg = a.dihedral;
   o.fill.timeout_s = a.timeout_s;
@@ -112,7 +113,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.virtual_sections = parse_interpolate(e.interpolate);
   o.enhance = !e.off;
   if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 1000000;
-  if (!e.edge_length.empty()) o.label_edges_text = parse_edge_lengths(e.edge_length, o.enhancement.edge_length_mm);
+  if (!e.edge_length.empty()) o.label_edges_text = parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.enhancement.edge_length_mm);
   if (e.deviation > 0) o.enhancement.deviation_mm = e.deviation;
   if (e.edge_min > 0) o.enhancement.edge_min_mm = e.edge_min;
   if (e.edge_max > 0) o.enhancement.edge_max_mm = e.edge_max;
@@ -144,7 +145,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"strict", a.strict ? "on" : "off"}};
   if (target == Target::volume) {
     o.option_texts.push_back({"order", std::to_string(a.order)});
-    o.option_texts.push_back({"max_volume_mm3", a.max_volume > 0 ? text_of(a.max_volume) : "unset"});
+    o.option_texts.push_back({"max_volume_mm3", a.max_volume.empty() ? "unset" : a.max_volume});
     o.option_texts.push_back({"radius_edge", a.radius_edge > 0 ? text_of(a.radius_edge) : "unset"});
     o.option_texts.push_back({"dihedral_deg", a.dihedral > 0 ? text_of(a.dihedral) : "unset"});
   }

@@ -113,18 +113,18 @@ double parse_number(const std::string& text, const std::string& option) {
   return *value;
 }
 
-std::vector<std::pair<std::string, double>> parse_edge_lengths(const std::string& text, std::optional<double>& all) {
+std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option, const std::string& what, const std::string& unit,
+                                                        std::optional<double>& all) {
+  const std::string mend = "write " + option + " 2.0, or per label 5=2.0,9=1.0, in " + unit;
   std::vector<std::pair<std::string, double>> per_label;
   for (const std::string& item : split(text, ',')) {
     const std::size_t at = item.find('=');
     const bool by_label = text.find('=') != std::string::npos;
-    if (by_label != (at != std::string::npos) || at == 0 || (!by_label && item != text))
-      fail_usage("'" + text + "' is no edge length", "--edge-length", "write --edge-length 2.0, or per label 5=2.0,9=1.0, in mm");
-    const double edge_mm = parse_number(by_label ? item.substr(at + 1) : item, "--edge-length");
-    if (edge_mm <= 0)
-      fail_usage("'" + item + "' is not above 0", "--edge-length", "write --edge-length 2.0, or per label 5=2.0,9=1.0, in mm");
-    if (by_label) per_label.emplace_back(item.substr(0, at), edge_mm);
-    else all = edge_mm;
+    if (by_label != (at != std::string::npos) || at == 0 || (!by_label && item != text)) fail_usage("'" + text + "' is no " + what, option, mend);
+    const double size = parse_number(by_label ? item.substr(at + 1) : item, option);
+    if (size <= 0) fail_usage("'" + item + "' is not above 0", option, mend);
+    if (by_label) per_label.emplace_back(item.substr(0, at), size);
+    else all = size;
   }
   return per_label;
 }

@@ -46,8 +46,9 @@ CLI::Validator number_in(double low, double high, const std::string& what);
 /// A finite number, or "not a number" as Error(usage) naming the option.
 double parse_number(const std::string& text, const std::string& option);
 
-/// "2.0" sets `all`; "5=2.0,9=1.0" is returned per label; mm, all above 0. @throws Error(usage)
-std::vector<std::pair<std::string, double>> parse_edge_lengths(const std::string& text, std::optional<double>& all);
+/// "2.0" sets `all`; "5=2.0,9=1.0" is returned per label; all above 0. `what` it is and its `unit` are for errors. @throws Error(usage)
+std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option, const std::string& what, const std::string& unit,
+                                                        std::optional<double>& all);
 
 /// "auto" (no value) or a whole number from 0 to 1000. @throws Error(usage)
 std::optional<int> parse_interpolate(const std::string& text);

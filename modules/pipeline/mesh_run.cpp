@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <utility>
 
 #include "base/error.h"
@@ -106,6 +107,11 @@ class MeshRun {
     double volume_mm3 = 0;
     for (const LabelReport& row : report_.labels) volume_mm3 += row.input_volume_mm3.value_or(0);
     if (o_.target == Target::volume && o_.fill.max_volume_mm3) refuse_too_many(1.5 * volume_mm3 / *o_.fill.max_volume_mm3);
+    double bounded = 0;
+    for (const auto& [label, mm3] : label_sizes(o_.label_volumes_text, "--max-volume"))
+      for (const LabelReport& row : report_.labels)
+        if (row.label == label) bounded += 1.5 * row.input_volume_mm3.value_or(0) / mm3;
+    if (o_.target == Target::volume) refuse_too_many(bounded);
   }
 
   bool wants_html() const {
@@ -220,10 +226,7 @@ class MeshRun {
     options.pixel_mm = pixel_mm_;
     options.gap_mm = gap_mm_;
     options.threads = o_.threads;
-    std::vector<LabelInfo> known = {{0, ""}};
-    known.insert(known.end(), input_.labels.begin(), input_.labels.end());
-    for (const auto& [text, edge_mm] : o_.label_edges_text)
-      for (std::size_t k : resolve_labels(known, text, "--edge-length")) options.label_edge_mm[known[k].number] = edge_mm;
+    options.label_edge_mm = label_sizes(o_.label_edges_text, "--edge-length");
     for (const LabelReport& row : report_.labels)
       if (row.input_volume_mm3) options.label_volume_mm3[row.label] = *row.input_volume_mm3;
     EnhanceResult result;
@@ -280,6 +283,16 @@ class MeshRun {
                std::to_string(a.euler) + " and its pieces from " + std::to_string(b.components) + " to " + std::to_string(a.components));
   }
 
+  /// Of "5=2.0,9=1.0": labels by number or name.
+  std::map<Label, double> label_sizes(const std::vector<std::pair<std::string, double>>& texts, const std::string& option) const {
+    std::vector<LabelInfo> known = {{0, ""}};
+    known.insert(known.end(), input_.labels.begin(), input_.labels.end());
+    std::map<Label, double> sizes;
+    for (const auto& [text, size] : texts)
+      for (std::size_t k : resolve_labels(known, text, option)) sizes[known[k].number] = size;
+    return sizes;
+  }
+
   static bool accepts(const Judgement& enhanced, const SurfaceCheck& before) {
     return enhanced.is_sound() && enhanced.check.labels.size() == before.labels.size();
   }
@@ -292,6 +305,7 @@ class MeshRun {
     options.known_sound = true;
     options.threads = o_.threads;
     options.given_up = given_up;
+    options.label_max_volume_mm3 = label_sizes(o_.label_volumes_text, "--max-volume");
     if (report_.surface_level == "enhanced") {  // good triangles: inner tetrahedra may be asked for quality
       if (!options.radius_edge) options.radius_edge = 1.4;
       if (!options.max_volume_mm3) options.inner_growth = 2;

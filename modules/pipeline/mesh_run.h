@@ -33,7 +33,8 @@ struct MeshRunOptions {
   std::optional<std::size_t> enhance_up_to;       ///< triangles; a larger stitched surface is kept as it is, with a warning
   EnhanceOptions enhancement;                     ///< pixel and gap are set by the run; label_edge_mm by label_edges_text
   std::vector<std::pair<std::string, double>> label_edges_text;
-  FillOptions fill;
+  FillOptions fill;                               ///< label_max_volume_mm3 by label_volumes_text
+  std::vector<std::pair<std::string, double>> label_volumes_text;
   bool many_tets = false;                         ///< more than 10 million tetrahedra are wanted
   int order = 1;                                  ///< of the tetrahedra: 1 linear, 2 quadratic (10 nodes)
   std::string space = "lps";                      ///< "lps" or "ras"

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "volume/compact.h"
 #include "volume/improve_tets.h"
 #include "volume/label_tets.h"
 #include "volume/worker_process.h"
@@ -20,15 +21,8 @@ namespace {
 
 using Status = FillResult::Status;
 using worker::Clock;
+using volume::Compact;
 using worker::Reply;
-
-/// The complex as TetGen gets it: used points only, each place once.
-struct Compact {
-  std::vector<Vec3> points;               // not yet scaled
-  std::vector<std::int32_t> original;     // of each point: its index in the complex
-  std::vector<std::int32_t> corners;      // three a triangle
-  std::vector<InterfaceTriangle> welded;  // the triangles with each place's first point
-};
 
 void check_input(const InterfaceComplex& complex, const FillOptions& options) {
   const auto count = static_cast<std::int64_t>(complex.points.size());
@@ -46,6 +40,7 @@ void check_input(const InterfaceComplex& complex, const FillOptions& options) {
       fail_usage("a mesh size or quality is not positive", name, "give a value above 0");
   };
   positive(options.max_volume_mm3, "max-volume");
+  for (const auto& [label, mm3] : options.label_max_volume_mm3) positive(mm3, "max-volume");
   positive(options.radius_edge, "radius-edge");
   positive(options.dihedral_deg, "dihedral");
   positive(options.inner_growth, "inner growth");
@@ -56,108 +51,11 @@ void check_input(const InterfaceComplex& complex, const FillOptions& options) {
                   "fill_volume");
 }
 
-Compact compact(const InterfaceComplex& complex) {
-  std::vector<std::int32_t> used;
-  std::vector<std::int32_t> place(complex.points.size(), -1);  // first point at the same place
-  for (const InterfaceTriangle& t : complex.triangles)
-    for (const std::int32_t v : t.v)
-      if (place[v] < 0) {
-        place[v] = v;
-        used.push_back(v);
-      }
-  const auto less = [&](std::int32_t i, std::int32_t j) {
-    const Vec3 &a = complex.points[i], &b = complex.points[j];
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    if (a.z != b.z) return a.z < b.z;
-    return i < j;
-  };
-  std::sort(used.begin(), used.end(), less);
-  for (std::size_t i = 1; i < used.size(); ++i) {
-    const Vec3 &a = complex.points[used[i - 1]], &b = complex.points[used[i]];
-    if (a.x == b.x && a.y == b.y && a.z == b.z) place[used[i]] = place[used[i - 1]];
-  }
-  Compact out;
-  std::vector<std::int32_t> number(complex.points.size(), -1);
-  for (std::size_t i = 0; i < complex.points.size(); ++i) {
-    if (place[i] != static_cast<std::int32_t>(i)) continue;
-    number[i] = static_cast<std::int32_t>(out.points.size());
-    out.original.push_back(static_cast<std::int32_t>(i));
-    out.points.push_back(complex.points[i]);
-  }
-  out.welded = complex.triangles;
-  out.corners.reserve(3 * complex.triangles.size());
-  for (InterfaceTriangle& t : out.welded) {
-    for (std::int32_t& v : t.v) {
-      v = place[v];
-      out.corners.push_back(number[v]);
-    }
-  }
-  return out;
-}
-
-/// The triangles around some of the labels; the others become background.
-Compact part_of(const Compact& whole, const std::set<Label>& labels) {
-  Compact out;
-  std::vector<std::int32_t> number(whole.points.size(), -1);
-  const auto kept = [&](Label l) { return labels.count(l) > 0 ? l : 0; };
-  for (std::size_t i = 0; i < whole.welded.size(); ++i) {
-    InterfaceTriangle t = whole.welded[i];
-    t.below = kept(t.below), t.above = kept(t.above);
-    if (t.below == t.above) continue;
-    out.welded.push_back(t);
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t v = whole.corners[3 * i + k];
-      if (number[v] < 0) {
-        number[v] = static_cast<std::int32_t>(out.points.size());
-        out.points.push_back(whole.points[v]);
-        out.original.push_back(whole.original[v]);
-      }
-      out.corners.push_back(number[v]);
-    }
-  }
-  return out;
-}
-
-/// Two sets of labels with about as many triangle sides each, apart along the longest axis; empty when there is nothing
-/// to gain. Neighbours in different sets are no obstacle: their common triangles are kept by both.
-std::vector<std::set<Label>> halves(const Compact& whole) {
-  constexpr std::size_t kWorthIt = 10000;  // triangles
-  if (whole.welded.size() < kWorthIt) return {};
-  struct Row {
-    double sides = 0, at[3] = {0, 0, 0};
-  };
-  std::map<Label, Row> rows;
-  double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
-  for (std::size_t i = 0; i < whole.welded.size(); ++i) {
-    const InterfaceTriangle& t = whole.welded[i];
-    if (t.below == t.above) continue;
-    const Vec3& p = whole.points[whole.corners[3 * i]];
-    const double at[3] = {p.x, p.y, p.z};
-    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
-    for (const Label l : {t.below, t.above}) {
-      if (l == 0) continue;
-      Row& row = rows[l];
-      ++row.sides;
-      for (int k = 0; k < 3; ++k) row.at[k] += at[k];
-    }
-  }
-  if (rows.size() < 2) return {};
-  int axis = 0;
-  for (int k = 1; k < 3; ++k)
-    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-  std::vector<std::pair<double, Label>> order;
-  double all = 0;
-  for (const auto& [label, row] : rows) order.emplace_back(row.at[axis] / row.sides, label), all += row.sides;
-  std::sort(order.begin(), order.end());
-  double before = 0;
-  std::size_t first = 0;
-  while (before + 0.5 * rows[order[first].second].sides < 0.5 * all) before += rows[order[first++].second].sides;
-  if (std::min(before, all - before) < 0.2 * all) return {};
-  std::vector<std::set<Label>> sets(2);
-  for (std::size_t i = 0; i < order.size(); ++i) sets[i < first ? 0 : 1].insert(order[i].second);
-  return sets;
-}
+/// Labels that are filled together, on their own.
+struct Group {
+  std::set<Label> labels;
+  std::optional<double> max_volume_mm3;
+};
 
 double median(std::vector<double>& values) {
   if (values.empty()) return 0;
@@ -251,7 +149,7 @@ class Filler {
     if (std::all_of(complex_.triangles.begin(), complex_.triangles.end(),
                     [](const InterfaceTriangle& t) { return t.below == 0 && t.above == 0; }))
       return failure(Status::empty, "there is nothing to fill: the surface bounds no label");
-    input_ = compact(complex_);
+    input_ = volume::compact(complex_);
     volume::Finding finding = volume::check_closed({complex_.points, input_.welded});
     if (!finding.message.empty())
       return failure(Status::refused, finding.message, std::move(finding.triangles));
@@ -260,20 +158,24 @@ class Filler {
 
     const double scale = z_scale_for_aspect(complex_);
     const bool wants_refinement =
-        options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 || options_.inner_growth;
+        options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 || options_.inner_growth ||
+                                  !options_.label_max_volume_mm3.empty();
     std::string before;  // what was tried and failed, for the message
     bool refinement_pays = wants_refinement;
     if (wants_refinement) {
       // The plain filling must still fit in the time.
       const auto budget = std::chrono::duration_cast<Clock::duration>((deadline_ - Clock::now()) * 0.6);
       const Clock::time_point until = std::min(deadline_, Clock::now() + budget);
-      if (const std::vector<std::set<Label>> sets = halves(input_); !sets.empty()) {
-        FillResult result = attempt({true, "", scale}, until, sets);
+      std::string note;
+      if (const std::vector<Group> own = groups(); !own.empty()) {
+        FillResult result = attempt({true, "", scale}, until, own);
         if (result.status == Status::verified) return result;
         hopeless_ = false;  // the whole says why
+        if (!options_.label_max_volume_mm3.empty()) note = result.message + ", so labels have no volume bound of their own";
       }
       FillResult result = attempt({true, "", scale}, until);
-      if (result.status == Status::verified || hopeless_) return result;
+      if (result.status == Status::verified) return with_note(std::move(result), note);
+      if (hopeless_) return result;
       refinement_pays = result.status != Status::timed_out;
       before = result.message;
     }
@@ -324,21 +226,40 @@ class Filler {
     return low.x == high.x || low.y == high.y || low.z == high.z;
   }
 
-  std::string switches(const Call& call) const {
+  /// By their own bounds on volume; else two, where that is faster. Empty: all labels at once.
+  std::vector<Group> groups() const {
+    std::map<std::optional<double>, std::set<Label>> by_bound;
+    for (const InterfaceTriangle& t : input_.welded)
+      for (const Label l : {t.below, t.above})
+        if (l != 0) {
+          const auto own = options_.label_max_volume_mm3.find(l);
+          by_bound[own == options_.label_max_volume_mm3.end() ? options_.max_volume_mm3 : own->second].insert(l);
+        }
+    std::vector<Group> out;
+    for (auto& [bound, labels] : by_bound) out.push_back({std::move(labels), bound});
+    if (out.size() > 1 || out[0].max_volume_mm3 != options_.max_volume_mm3) return out;
+    out.clear();
+    for (std::set<Label>& half : volume::halves(input_)) out.push_back({std::move(half), options_.max_volume_mm3});
+    return out;
+  }
+
+  std::string switches(const Call& call, const std::optional<double>& max_volume_mm3) const {
     std::string s = "p";
     if (call.refine) {
       // A volume bound alone refines too: TetGen's own ratio of 2, no dihedral bound.
       s += "q" + number(options_.radius_edge.value_or(2));
       if (options_.dihedral_deg) s += "/" + number(*options_.dihedral_deg);
-      if (sized(call)) s += "m";
-      if (options_.max_volume_mm3) s += "a" + number(*options_.max_volume_mm3 * call.z_scale);
+      if (sized(call, max_volume_mm3)) s += "m";
+      if (max_volume_mm3) s += "a" + number(*max_volume_mm3 * call.z_scale);
     }
     // Y keeps the surface; M keeps TetGen from merging points closer than its tolerance, which would make
     // features thinner than 1e-8 of the box intersect themselves.
     return s + "YM" + call.tolerance;
   }
 
-  bool sized(const Call& call) const { return call.refine && options_.inner_growth && call.z_scale == 1; }
+  bool sized(const Call& call, const std::optional<double>& max_volume_mm3) const {
+    return call.refine && options_.inner_growth && !max_volume_mm3 && call.z_scale == 1;
+  }
 
   /// The edge length wanted at each point, for tets inside: the mean of the surface's edges there, grown. TetGen's
   /// edges come out longer than asked by the factor.
@@ -354,7 +275,7 @@ class Filler {
     return sum;
   }
 
-  Reply call_worker(const std::string& switches, const Call& call, const Compact& part, Clock::time_point deadline) const {
+  Reply call_worker(const std::string& switches, const Call& call, bool sized, const Compact& part, Clock::time_point deadline) const {
     std::vector<Vec3> moved;
     const bool as_is = call.z_scale == 1 && call.turns == 0;
     if (!as_is) {
@@ -362,32 +283,34 @@ class Filler {
       for (Vec3& p : moved) p = turned({p.x, p.y, p.z * call.z_scale}, call.turns);
     }
     std::vector<double> edges;
-    if (sized(call)) edges = sizes(part);
+    if (sized) edges = sizes(part);
     return worker::run(program_, {switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges, &part.corners}, deadline, options_.given_up);
   }
 
   FillResult attempt(const Call& call, Clock::time_point deadline) {
-    const std::string name = describe(call, switches(call));
+    const std::string name = describe(call, switches(call, options_.max_volume_mm3));
     TetMesh mesh;
-    FillResult failed = fill(call, input_, deadline, name, mesh);
+    FillResult failed = fill(call, input_, options_.max_volume_mm3, deadline, name, mesh);
     return failed.message.empty() ? assemble(std::move(mesh), name) : failed;
   }
 
-  /// The labels of each set on their own, side by side.
-  FillResult attempt(const Call& call, Clock::time_point deadline, const std::vector<std::set<Label>>& sets) {
-    const std::string name = describe(call, switches(call)) + " in " + std::to_string(sets.size()) + " parts";
-    std::vector<TetMesh> meshes(sets.size());
-    std::vector<FillResult> failed(sets.size());
-    parallel_for(sets.size(), options_.threads, [&](std::size_t i) { failed[i] = fill(call, part_of(input_, sets[i]), deadline, name, meshes[i]); });
+  /// The labels of each group on their own, side by side.
+  FillResult attempt(const Call& call, Clock::time_point deadline, const std::vector<Group>& own) {
+    const std::string name = describe(call, switches(call, own[0].max_volume_mm3)) + " in " + std::to_string(own.size()) + " parts";
+    std::vector<TetMesh> meshes(own.size());
+    std::vector<FillResult> failed(own.size());
+    parallel_for(own.size(), options_.threads, [&](std::size_t i) {
+      failed[i] = fill(call, volume::part_of(input_, own[i].labels), own[i].max_volume_mm3, deadline, name, meshes[i]);
+    });
     for (FillResult& f : failed)
       if (!f.message.empty()) return std::move(f);
     TetMesh mesh = std::move(meshes[0]);
     for (std::size_t i = 1; i < meshes.size(); ++i) {
-      const auto own = static_cast<std::int32_t>(complex_.points.size()), offset = static_cast<std::int32_t>(mesh.points.size()) - own;
-      mesh.points.insert(mesh.points.end(), meshes[i].points.begin() + own, meshes[i].points.end());
+      const auto known = static_cast<std::int32_t>(complex_.points.size()), offset = static_cast<std::int32_t>(mesh.points.size()) - known;
+      mesh.points.insert(mesh.points.end(), meshes[i].points.begin() + known, meshes[i].points.end());
       for (std::array<std::int32_t, 4> t : meshes[i].tets) {
         for (std::int32_t& v : t)
-          if (v >= own) v += offset;
+          if (v >= known) v += offset;
         mesh.tets.push_back(t);
       }
       mesh.labels.insert(mesh.labels.end(), meshes[i].labels.begin(), meshes[i].labels.end());
@@ -397,9 +320,9 @@ class Filler {
   }
 
   /// Tets of a part's labels, checked against its triangles; the complex's points come first. A failure has a message.
-  FillResult fill(const Call& call, const Compact& part, Clock::time_point deadline, const std::string& name, TetMesh& mesh) {
+  FillResult fill(const Call& call, const Compact& part, const std::optional<double>& max_volume_mm3, Clock::time_point deadline, const std::string& name, TetMesh& mesh) {
     const auto start = Clock::now();
-    Reply reply = call_worker(switches(call) + "Jn", call, part, deadline);
+    Reply reply = call_worker(switches(call, max_volume_mm3) + "Jn", call, sized(call, max_volume_mm3), part, deadline);
     switch (reply.kind) {
       case Reply::Kind::not_a_worker:
         hopeless_ = true;
@@ -513,7 +436,7 @@ class Filler {
 
   /// Asks TetGen (-d) for the triangles that intersect; true when it found some, now in `refusal`.
   bool search(FillResult& refusal) {
-    const Reply reply = call_worker("pdMJ", Call{}, input_, deadline_);
+    const Reply reply = call_worker("pdMJ", Call{}, false, input_, deadline_);
     std::set<std::int32_t> found;
     if (reply.kind == Reply::Kind::done) {
       const auto count = static_cast<std::int32_t>(complex_.triangles.size());
@@ -575,11 +498,16 @@ double estimate_tets(const InterfaceComplex& complex, const FillOptions& options
     sides += own;
     edges += own * (norm(b - a) + norm(c - b) + norm(a - c)) / 3;
   }
-  for (const auto& [label, v] : volume::surface_volumes(complex)) volume += std::abs(v.mm3);
+  const auto volumes = volume::surface_volumes(complex);
+  for (const auto& [label, v] : volumes) volume += std::abs(v.mm3);
   if (sides == 0) return 0;
   const double edge = edges / sides * options.inner_growth.value_or(4);
   double tets = 1.5 * sides + volume / (0.12 * edge * edge * edge);
   if (options.max_volume_mm3) tets = std::max(tets, 1.5 * volume / *options.max_volume_mm3);
+  double bounded = 0;
+  for (const auto& [label, v] : volumes)
+    if (const auto own = options.label_max_volume_mm3.find(label); own != options.label_max_volume_mm3.end()) bounded += 1.5 * std::abs(v.mm3) / own->second;
+  tets = std::max(tets, bounded);
   return tets;
 }
 

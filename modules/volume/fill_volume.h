@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace stackmesh {
 /// How the complex is filled.
 struct FillOptions {
   std::optional<double> max_volume_mm3;  ///< largest tetrahedron, mm3; unset: no bound (graded)
+  std::map<Label, double> label_max_volume_mm3;  ///< of the tetrahedra of a label, in place of max_volume_mm3 and inner_growth
   std::optional<double> radius_edge;  ///< largest circumradius / shortest edge, before improvement; a target. Unset
                                       ///< together with dihedral_deg, inner_growth and max_volume_mm3: no refinement
   std::optional<double> dihedral_deg;  ///< smallest dihedral angle that TetGen refines for, degrees; a target

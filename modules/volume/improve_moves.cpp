@@ -120,7 +120,7 @@ bool ImproveMoves::remove_edge(std::int32_t t) {
     const std::int32_t a = v[e[0]], b = v[e[1]];
     if (!m_.ring(t, a, b, kLongestRing, around_, ring_)) continue;
     const int n = static_cast<int>(ring_.size());
-    const double before = worst_of(around_) * (1 + kGain);
+    const double before = std::min(floor_, worst_of(around_) * (1 + kGain));
     // The best triangulation of the ring (klincsek1980): best[i][j] of the polygon i .. j.
     double best[kLongestRing][kLongestRing];
     int middle[kLongestRing][kLongestRing];
@@ -165,7 +165,7 @@ bool ImproveMoves::remove_face(std::int32_t t) {
     std::int32_t e = -1;
     for (const std::int32_t u : m_.tets[n].v)
       if (u != v[1] && u != v[2] && u != v[3]) e = u;
-    const double before = std::min(m_.quality[t], m_.quality[n]) * (1 + kGain);
+    const double before = std::min(floor_, std::min(m_.quality[t], m_.quality[n]) * (1 + kGain));
     fresh_.clear();
     double q = 2;
     for (int k = 1; k <= 3 && q > before; ++k) {
@@ -185,7 +185,7 @@ bool ImproveMoves::collapse(std::int32_t t) {
   for (const std::int32_t gone : v) {
     if (!m_.movable[gone]) continue;
     m_.star(gone, around_);
-    const double before = worst_of(around_) * (1 + kGain);
+    const double before = std::min(floor_, worst_of(around_) * (1 + kGain));
     for (const std::int32_t into : v) {
       if (into == gone) continue;
       fresh_.clear();
@@ -250,7 +250,7 @@ bool ImproveMoves::try_insert(Vec3 p, double enough) {
   }
   if (q <= -0.5) return false;
   p = best_place(fan_, p, q, enough);
-  if (q <= old_worst * (1 + 10 * kGain) + 1e-3) return false;
+  if (q <= std::min(floor_, old_worst * (1 + 10 * kGain) + 1e-3)) return false;
   const std::int32_t fresh_point = m_.add_point(p);
   fresh_.clear();
   for (const Corners& v : fan_) fresh_.push_back({fresh_point, v[1], v[2], v[3]});

@@ -7,10 +7,13 @@
 namespace stackmesh::volume {
 
 /// The changes that may mend a tet. Each is made only if the worst tet afterwards is better than the worst of those
-/// it replaces, so that a mesh never gets worse.
+/// it replaces, so that a mesh never gets worse; unless it is shaken.
 class ImproveMoves {
  public:
   explicit ImproveMoves(ImproveMesh& mesh) : m_(mesh) {}
+
+  /// From now on tets of quality `floor` are good enough for any change but smooth(). Unset: 2.
+  void accept_from(double floor) { floor_ = floor; }
 
   /// Moves a point to where the worst tet around it is best; tets better than `enough` do not count. True when it moved.
   bool smooth(std::int32_t vertex, double enough);
@@ -35,6 +38,7 @@ class ImproveMoves {
   Vec3 centre_of_cavity() const;
 
   ImproveMesh& m_;
+  double floor_ = 2;
   std::vector<std::int32_t> around_, ring_, cavity_;
   std::vector<ImproveMesh::Corners> fresh_, fan_;
   std::vector<Vec3> gradients_;

@@ -79,7 +79,7 @@ std::vector<std::int32_t> cut_into_pieces(const TetMesh& mesh, int count) {
   return piece;
 }
 
-std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, int rings) {
+std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, int rings, std::size_t* count) {
   std::vector<std::int32_t> piece(mesh.tets.size(), -1);
   for (int ring = 0; ring < rings; ++ring) {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -89,6 +89,22 @@ std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, in
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       if (piece[t] == 0)
         for (const std::int32_t v : mesh.tets[t]) marked[v] = 1;
+  }
+  std::vector<std::int32_t> parent(mesh.points.size()), number(mesh.points.size(), -1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (piece[t] == 0)
+      for (int i = 1; i < 4; ++i) parent[root(mesh.tets[t][i])] = root(mesh.tets[t][0]);
+  *count = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (piece[t] < 0) continue;
+    std::int32_t& n = number[root(mesh.tets[t][0])];
+    if (n < 0) n = static_cast<std::int32_t>((*count)++);
+    piece[t] = n;
   }
   return piece;
 }

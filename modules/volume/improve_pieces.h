@@ -11,8 +11,9 @@ namespace stackmesh::volume {
 /// Cuts the tets into `count` pieces of about the same number, by planes across the axes. A power of two.
 std::vector<std::int32_t> cut_into_pieces(const TetMesh& mesh, int count);
 
-/// The tets around marked points and those around these, `rings` times: 1 in the piece returned, else -1.
-std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, int rings);
+/// The tets around marked points and those around these, `rings` times; what hangs together in a point is one piece, counted from
+/// 0. -1 for all others.
+std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, int rings, std::size_t* count);
 
 /// Changes pieces of a mesh on their own, side by side. `piece` tells each tet's, -1 for tets that stay. Points before `kept` and
 /// points that a tet outside of the piece has, too, stay; so the pieces fit together again. Points and tets are numbered

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
 
+/// Tets below it are worked on longer.
+constexpr double kWorstDeg = 14;
+
 class Improver {
  public:
   Improver(ImproveMesh& mesh, const ImproveOptions& options, ImproveCounts& counts)
@@ -86,29 +89,93 @@ class Improver {
 
 }  // namespace
 
+/// The worst tets of a small mesh: all changes that helped are used up, so some are made that do not, at random, and what
+/// follows from them. The best of all tries stays.
+void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, ImproveCounts& counts) {
+  constexpr int kShakes = 3, kPatience = 20;
+  const double goal = std::sin(kWorstDeg * kRadians);
+  const auto worst_of = [&](const ImproveMesh& m) {  // tets below the goal, worst first
+    std::vector<std::pair<double, std::int32_t>> worst;
+    for (std::size_t t = 0; t < m.tets.size(); ++t)
+      if (m.tets[t].alive() && m.quality[t] < goal) worst.emplace_back(m.quality[t], static_cast<std::int32_t>(t));
+    std::sort(worst.begin(), worst.end());
+    return worst;
+  };
+  const auto better = [](const auto& a, const auto& b) {
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      if (std::abs(a[i].first - b[i].first) > 1e-3) return a[i].first > b[i].first;
+    return a.size() < b.size();
+  };
+  std::uint64_t state = 0x9e3779b97f4a7c15u;
+  const auto random = [&](std::size_t n) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<std::size_t>((state >> 33) % n);
+  };
+  auto worst = worst_of(mesh);
+  for (int attempt = 0, in_vain = 0; attempt < tries && in_vain < kPatience && !worst.empty() && std::chrono::steady_clock::now() < options.deadline; ++attempt) {
+    ++in_vain;
+    ImproveMesh tried = mesh;
+    ImproveMoves moves(tried);
+    moves.accept_from(1e-3);
+    for (int shake = 0; shake < 1 + static_cast<int>(random(kShakes)); ++shake) {
+      std::int32_t t = worst[random(std::min<std::size_t>(worst.size(), 3))].second;
+      for (std::size_t step = random(3); step > 0 && tried.tets[t].alive(); --step)  // a tet near it
+        if (const std::int32_t next = tried.tets[t].n[random(4)]; next >= 0) t = next;
+      if (!tried.tets[t].alive()) continue;
+      switch (random(4)) {
+        case 0: moves.remove_edge(t); break;
+        case 1: moves.remove_face(t); break;
+        case 2: moves.collapse(t); break;
+        default: moves.insert(t, goal, random(2) == 0); break;
+      }
+    }
+    ImproveCounts done;
+    Improver(tried, options, done).run();
+    auto now = worst_of(tried);
+    if (!better(now, worst)) continue;
+    mesh = std::move(tried), worst = std::move(now);
+    ++counts.searched;
+    in_vain = 0;
+  }
+}
+
 void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options, ImproveCounts& counts) {
   constexpr std::size_t kPiece = 20000;  // tets
-  int pieces = 1;
-  while (mesh.tets.size() / static_cast<std::size_t>(pieces) > 2 * kPiece) pieces *= 2;
-  const auto change = [&](const std::vector<std::int32_t>& piece, std::size_t count) {
+  std::size_t pieces = 1;
+  while (mesh.tets.size() / pieces > 2 * kPiece) pieces *= 2;
+  const auto change = [&](const std::vector<std::int32_t>& piece, std::size_t count, const auto& with) {
     std::vector<ImproveCounts> done(count);
-    std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads,
-                                             [&](std::size_t i, ImproveMesh& work) { Improver(work, options, done[i]).run(); });
+    std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads, [&](std::size_t i, ImproveMesh& work) { with(work, done[i]); });
     for (const ImproveCounts& d : done) {
       counts.moved += d.moved, counts.edges += d.edges, counts.faces += d.faces;
-      counts.collapsed += d.collapsed, counts.inserted += d.inserted;
+      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched;
       counts.passes = std::max(counts.passes, d.passes);
     }
     return shared;
   };
-  const std::vector<char> cut = change(cut_into_pieces(mesh, pieces), static_cast<std::size_t>(pieces));
-  if (pieces == 1) return;
-  const double goal = std::sin(options.goal_deg * kRadians);
-  std::vector<char> bad(mesh.points.size(), 0);
-  for (const auto& t : mesh.tets)
-    if ((cut[t[0]] || cut[t[1]] || cut[t[2]] || cut[t[3]]) && tet_quality(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < goal)
-      for (const std::int32_t v : t) bad[v] = 1;
-  change(grow(mesh, std::move(bad), 2), 1);
+  const auto improve = [&](ImproveMesh& work, ImproveCounts& done) { Improver(work, options, done).run(); };
+  // Points of tets below an angle; `of` says which tets count.
+  const auto points_below = [&](double deg, const auto& of) {
+    std::vector<char> marks(mesh.points.size(), 0);
+    const double goal = std::sin(deg * kRadians);
+    for (const auto& t : mesh.tets)
+      if (of(t) && tet_quality(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < goal)
+        for (const std::int32_t v : t) marks[v] = 1;
+    return marks;
+  };
+
+  std::size_t count = 0;
+  const std::vector<char> cut = change(cut_into_pieces(mesh, static_cast<int>(pieces)), pieces, improve);
+  if (pieces > 1) {
+    std::vector<std::int32_t> along =
+        grow(mesh, points_below(options.goal_deg, [&](const auto& t) { return cut[t[0]] || cut[t[1]] || cut[t[2]] || cut[t[3]]; }), 2, &count);
+    for (std::int32_t& p : along)
+      if (p >= 0) p %= static_cast<std::int32_t>(pieces);
+    change(along, pieces, improve);
+  }
+  const std::vector<std::int32_t> worst = grow(mesh, points_below(kWorstDeg, [](const auto&) { return true; }), 3, &count);
+  const int tries = count == 0 ? 0 : std::min(60, static_cast<int>(2000 / count));
+  if (tries > 0) change(worst, count, [&](ImproveMesh& work, ImproveCounts& done) { search(work, options, tries, done); });
 }
 
 }  // namespace stackmesh::volume

@@ -168,6 +168,15 @@ TEST_F(Options, TetrahedraCanBeRefined) {
       1e-9);
 }
 
+TEST_F(Options, TetrahedraOfOneLabelCanBeRefined) {
+  const Json plain = mesh({border_}), all = mesh({border_, "--max-volume", "0.5"}), fine = mesh({border_, "--max-volume", "1=0.5"});
+  const auto tets = [](const Json& r, int label) { return row(r, label).at("tets").get<double>(); };
+  EXPECT_GT(tets(fine, 1), 3 * tets(plain, 1));
+  EXPECT_NEAR(tets(fine, 1) / tets(all, 1), 1, 0.05);
+  EXPECT_LT(tets(fine, 2), 1.3 * tets(plain, 2));
+  EXPECT_EQ(fine.at("options").at("max_volume_mm3"), "1=0.5");
+}
+
 TEST_F(Options, StrictTurnsALostDetailIntoExit4) {
   const Json r = mesh({testdata("noise.nii.gz")});
   const bool lost = r.at("warnings").dump().find("components") != std::string::npos;

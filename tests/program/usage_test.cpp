@@ -45,7 +45,7 @@ TEST_F(Usage, BadNumbers) {
       {"--snap", {"nan", "-0.5"}},
       {"--threads", {"0", "1.5", "many", "99999"}},
       {"--timeout", {"0", "inf"}},
-      {"--max-volume", {"0", "nan"}},
+      {"--max-volume", {"0", "nan", "1=0", "1=2,3"}},
       {"--radius-edge", {"0.5"}},
       {"--dihedral", {"-1", "60"}},
       {"--deviation", {"0"}},

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstring>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -245,6 +247,80 @@ TEST(FillVolume, QualityRefinesAndKeepsTheSurface) {
   EXPECT_GT(fine.mesh.points.size(), plain.mesh.points.size());
   EXPECT_NE(fine.message.find("q1.4/12"), std::string::npos) << fine.message;
   EXPECT_EQ(fine.fallback, "");
+}
+
+/// Enough triangles for two workers: four labels in a row, the sheets between them stepped.
+InterfaceComplex row_of_labels() {
+  return shapes::voxels(56, 16, 16, {1, 1, 1.25}, [](int i, int j, int k) { return 1 + (i + (j / 4 + k / 4) % 2) / 14 % 4; });
+}
+
+FillOptions graded(int threads = 0) {
+  FillOptions options;
+  options.radius_edge = 1.4;
+  options.inner_growth = 2;
+  options.improve_deg = 24;
+  options.threads = threads;
+  return options;
+}
+
+TEST(FillVolume, LabelsInTwoWorkersFitTogetherAndAreTheSameForAnyThreads) {
+  const auto complex = row_of_labels();
+  ASSERT_GT(complex.triangles.size(), 10000u);
+  const FillResult one = expect_verified(complex, graded(1)), two = expect_verified(complex, graded(2));
+  EXPECT_NE(one.message.find("in 2 parts"), std::string::npos) << one.message;
+  EXPECT_EQ(one.message, two.message);
+  ASSERT_EQ(one.mesh.tets, two.mesh.tets);
+  EXPECT_EQ(one.mesh.labels, two.mesh.labels);
+  ASSERT_EQ(one.mesh.points.size(), two.mesh.points.size());
+  EXPECT_EQ(0, std::memcmp(one.mesh.points.data(), two.mesh.points.data(), one.mesh.points.size() * sizeof(Vec3)));
+}
+
+TEST(FillVolume, TwiceAsLargeIsTheSameMeshTwiceAsLarge) {
+  auto complex = row_of_labels();
+  const FillResult small = expect_verified(complex, graded());
+  for (Vec3& p : complex.points) p = 2.0 * p;
+  const FillResult large = expect_verified(complex, graded());
+  ASSERT_EQ(small.mesh.tets, large.mesh.tets);
+  for (std::size_t p = 0; p < small.mesh.points.size(); ++p) {
+    EXPECT_EQ(2 * small.mesh.points[p].x, large.mesh.points[p].x);
+    EXPECT_EQ(2 * small.mesh.points[p].z, large.mesh.points[p].z);
+  }
+}
+
+TEST(FillVolume, MovedItIsAboutAsFineAndHoldsTheSameVolumes) {
+  auto complex = noisy_ball(13, 4, 7);
+  const FillResult here = expect_verified(complex, graded());
+  for (Vec3& p : complex.points) p = p + Vec3{-1024, 512, 2048};
+  const FillResult there = expect_verified(complex, graded());
+  EXPECT_NEAR(static_cast<double>(here.mesh.tets.size()), static_cast<double>(there.mesh.tets.size()), 0.03 * static_cast<double>(here.mesh.tets.size()));
+  const auto a = shapes::volumes(here.mesh), b = shapes::volumes(there.mesh);
+  ASSERT_EQ(a.size(), b.size());
+  for (const auto& [label, mm3] : a) EXPECT_NEAR(b.at(label), mm3, 1e-9 * mm3);
+}
+
+TEST(FillVolume, ALabelsOwnVolumeBoundHoldsForItAlone) {
+  const auto complex = shapes::voxels(12, 6, 6, {1, 1, 1}, [](int i, int, int) { return i < 6 ? 3 : 7; });
+  FillOptions options = graded();
+  options.improve_deg.reset();
+  const FillResult plain = expect_verified(complex, options);
+  options.label_max_volume_mm3 = {{7, 0.02}};
+  const FillResult own = expect_verified(complex, options);
+  EXPECT_EQ(own.fallback, "");
+  const auto count = [](const TetMesh& mesh, Label label) { return std::count(mesh.labels.begin(), mesh.labels.end(), label); };
+  EXPECT_GT(count(own.mesh, 7), 216 / 0.02);
+  EXPECT_LT(count(own.mesh, 3), 1.3 * static_cast<double>(count(plain.mesh, 3)));
+  EXPECT_GT(estimate_tets(complex, options), 216 / 0.02);
+  options.label_max_volume_mm3[7] = 0;
+  EXPECT_THROW(fill_volume(complex, options), Error);
+}
+
+TEST(FillVolume, EndsSoonWhenItIsGivenUp) {
+  const std::atomic<bool> given_up{true};
+  FillOptions options = graded();
+  options.given_up = &given_up;
+  const FillResult r = fill_volume(row_of_labels(), options);
+  EXPECT_EQ(r.status, Status::timed_out) << r.message;
+  EXPECT_TRUE(r.mesh.tets.empty());
 }
 
 }  // namespace
