@@ -345,6 +345,7 @@ class MeshRun {
   void raise() {
     OrderOptions options;
     options.threads = o_.threads;
+    options.volumes_restored = report_.surface_level == "enhanced";
     mesh_ = raise_order(std::move(*mesh_), options).mesh;
   }
 

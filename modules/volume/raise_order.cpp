@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -69,11 +71,33 @@ class SurfaceCurves {
   template <class Visit>
   void each_offset(Visit visit) const {
     for (const SurfaceEdge& e : edges_) {
-      if (e.kind == Kind::straight) continue;
-      const Vec3 d = mesh_.points[e.q] - mesh_.points[e.p];
-      const Vec3 offset = e.kind == Kind::smooth ? across(e, d) : along(e, d);
-      if (norm(offset) > 1e-12 * norm(d)) visit(e.edge, offset);
+      const Vec3 offset = offset_of(e);
+      if (norm(offset) > 1e-12 * norm(mesh_.points[e.q] - mesh_.points[e.p])) visit(e.edge, offset);
     }
+  }
+
+  /// How far each point stands off the smooth surface if the flat triangles around it hold the right volume: the mean height
+  /// of the surface over a triangle is that of an arc over its edges, averaged over their directions; of a curve over its
+  /// chord, two thirds of the largest.
+  std::vector<Vec3> stand_off() const {
+    std::vector<Vec3> sum(mesh_.points.size());
+    std::vector<int> count(mesh_.points.size(), 0);
+    std::vector<char> on_curve(mesh_.points.size(), 0);
+    for (const SurfaceEdge& e : edges_)
+      if (e.kind == Kind::curve) on_curve[e.p] = on_curve[e.q] = 1;
+    for (const SurfaceEdge& e : edges_) {
+      const Vec3 offset = offset_of(e);
+      for (const std::int32_t v : {e.p, e.q}) {
+        if (on_curve[v] != (e.kind == Kind::curve)) continue;
+        sum[v] = sum[v] + offset;
+        ++count[v];
+      }
+    }
+    for (std::size_t v = 0; v < sum.size(); ++v) {
+      const bool corner = on_curve[v] && dot(tangents_[v], tangents_[v]) == 0;
+      sum[v] = corner || count[v] == 0 ? Vec3{} : (on_curve[v] ? 2.0 / 3 : 1.0) / count[v] * sum[v];
+    }
+    return sum;
   }
 
  private:
@@ -136,6 +160,11 @@ class SurfaceCurves {
       if (same && planes_[e.side[0]] != 0 && planes_[e.side[0]] == planes_[e.side[1]]) e.kind = Kind::straight;
       else if (same && planes_[e.side[0]] == 0 && planes_[e.side[1]] == 0 && cosine >= ridge_cosine_) e.kind = Kind::smooth;
     }
+  }
+
+  Vec3 offset_of(const SurfaceEdge& e) const {
+    const Vec3 d = mesh_.points[e.q] - mesh_.points[e.p];
+    return e.kind == Kind::straight ? Vec3{} : e.kind == Kind::smooth ? across(e, d) : along(e, d);
   }
 
   static int corner(const InterfaceTriangle& t, std::int32_t v) { return t.v[0] == v ? 0 : t.v[1] == v ? 1 : 2; }
@@ -223,8 +252,13 @@ class SurfaceCurves {
   std::vector<Vec3> sheet_normals_, tangents_;
 };
 
-/// The smallest Bernstein coefficient of an element's Jacobian determinant, over the straight element's determinant.
-double determinant_bound(const std::array<Vec3, 4>& corner, const std::array<Vec3, 6>& mid) {
+struct Determinant {
+  double least_rel;  // a lower bound everywhere, over the straight element's
+  double volume;     // the element's
+};
+
+/// From the Bernstein coefficients of an element's Jacobian determinant: their smallest bounds it, their mean is its mean.
+Determinant determinant_of(const std::array<Vec3, 4>& corner, const std::array<Vec3, 6>& mid) {
   static constexpr int kMid[4][4] = {{-1, 0, 2, 3}, {0, -1, 1, 4}, {2, 1, -1, 5}, {3, 4, 5, -1}};
   // Gradients at the corners: they are linear in between.
   Vec3 g[3][4];
@@ -240,12 +274,15 @@ double determinant_bound(const std::array<Vec3, 4>& corner, const std::array<Vec
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) product[i][j] = cross(g[1][i], g[2][j]);
   const auto term = [&](int i, int j, int k) { return dot(g[0][i], product[j][k]); };
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity(), sum = 0;
   for (int i = 0; i < 4; ++i)
     for (int j = i; j < 4; ++j)
-      for (int k = j; k < 4; ++k)
-        smallest = std::min(smallest, term(i, j, k) + term(i, k, j) + term(j, i, k) + term(j, k, i) + term(k, i, j) + term(k, j, i));
-  return smallest / 6 / straight;
+      for (int k = j; k < 4; ++k) {
+        const double coefficient = (term(i, j, k) + term(i, k, j) + term(j, i, k) + term(j, k, i) + term(k, i, j) + term(k, j, i)) / 6;
+        smallest = std::min(smallest, coefficient);
+        sum += coefficient;
+      }
+  return {smallest / straight, sum / 20 / 6};
 }
 
 class Raiser {
@@ -253,11 +290,26 @@ class Raiser {
   Raiser(TetMesh mesh, const OrderOptions& options) : o_(options), edges_(mesh), mesh_(std::move(mesh)) {}
 
   OrderResult run() {
-    place_straight();
     OrderResult result;
+    std::vector<std::pair<std::int64_t, Vec3>> ways;
+    std::map<Label, double> volumes;
+    if (o_.volumes_restored)
+      for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+        const auto& v = mesh_.tets[t];
+        const Vec3 a = mesh_.points[v[0]];
+        volumes[mesh_.labels[t]] += dot(mesh_.points[v[1]] - a, cross(mesh_.points[v[2]] - a, mesh_.points[v[3]] - a)) / 6;
+      }
     if (o_.follow_surface) {
-      bend();
+      const SurfaceCurves curves(mesh_, edges_, o_.ridge_deg);
+      curves.each_offset([&](std::int64_t edge, Vec3 offset) { ways.emplace_back(edge, offset); });
+      if (o_.volumes_restored) result.moved_corners = draw_in(curves.stand_off());
+    }
+    place_straight();
+    if (o_.follow_surface) {
+      bend(ways);
       hold_back();
+      if (o_.volumes_restored)
+        for (int round = 0; round < 3; ++round) give_back_volumes(volumes);
       for (const double s : share_) {
         result.curved_nodes += s > 0;
         result.limited_nodes += s < 1;
@@ -286,27 +338,66 @@ class Raiser {
 
   Vec3 middle(std::int32_t p, std::int32_t q) const { return 0.5 * (mesh_.points[p] + mesh_.points[q]); }
 
-  void bend() {
+  /// Moves the corners by -off; where a tet would lose more than three tenths of its volume its corners move half as far, and so on.
+  std::size_t draw_in(const std::vector<Vec3>& off) {
+    constexpr double kKept = 0.7;
+    const std::vector<Vec3> from = mesh_.points;
+    std::vector<double> share(from.size(), 1);
+    std::vector<std::int32_t> suspects;
+    const auto moves = [&](std::int32_t v) { return share[v] > 0 && dot(off[v], off[v]) > 0; };
+    const auto any_moves = [&](std::int32_t t) { return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), moves); };
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
+      if (any_moves(static_cast<std::int32_t>(t))) suspects.push_back(static_cast<std::int32_t>(t));
+    const std::vector<std::int32_t> all = suspects;
+    const auto determinant = [&](const std::vector<Vec3>& p, std::int32_t t) {
+      const auto& v = mesh_.tets[t];
+      return dot(p[v[1]] - p[v[0]], cross(p[v[2]] - p[v[0]], p[v[3]] - p[v[0]]));
+    };
+    for (std::size_t v = 0; v < from.size(); ++v) mesh_.points[v] = from[v] - off[v];
+    while (!suspects.empty()) {
+      std::vector<char> less(from.size(), 0);
+      bool any = false;
+      for (const std::int32_t t : suspects)
+        if (any_moves(t) && !(determinant(mesh_.points, t) >= kKept * determinant(from, t))) {
+          any = true;
+          for (const std::int32_t v : mesh_.tets[t]) less[v] = moves(v);
+        }
+      if (!any) break;
+      for (std::size_t v = 0; v < from.size(); ++v) {
+        if (!less[v]) continue;
+        share[v] = share[v] > 1.0 / 16 ? share[v] / 2 : 0;
+        mesh_.points[v] = from[v] - share[v] * off[v];
+      }
+      suspects.clear();
+      for (const std::int32_t t : all)
+        if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), [&](std::int32_t v) { return less[v] != 0; })) suspects.push_back(t);
+    }
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < from.size(); ++v) count += moves(static_cast<std::int32_t>(v));
+    return count;
+  }
+
+  void bend(const std::vector<std::pair<std::int64_t, Vec3>>& ways) {
     bent_of_.assign(edges_.larger.size(), -1);
-    SurfaceCurves(mesh_, edges_, o_.ridge_deg).each_offset([&](std::int64_t edge, Vec3 offset) {
+    for (const auto& [edge, offset] : ways) {
       bent_of_[edge] = static_cast<std::int32_t>(bent_.size());
       bent_.push_back(static_cast<std::int32_t>(edge));
       straight_.push_back(mesh_.points[first_ + edge]);
       offsets_.push_back(offset);
       mesh_.points[first_ + edge] = straight_.back() + offset;
-    });
+    }
     share_.assign(bent_.size(), 1);
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
       if (std::any_of(mesh_.mid[t].begin(), mesh_.mid[t].end(), [&](std::int32_t m) { return bent_of_[m - first_] >= 0; }))
         curved_tets_.push_back(static_cast<std::int32_t>(t));
   }
 
-  double bound_of(std::int32_t tet) const {
+  Determinant determinant_of_tet(std::int32_t tet) const {
     std::array<Vec3, 4> corner;
     std::array<Vec3, 6> mid;
     for (int i = 0; i < 4; ++i) corner[i] = mesh_.points[mesh_.tets[tet][i]];
     for (int i = 0; i < 6; ++i) mid[i] = mesh_.points[mesh_.mid[tet][i]];
-    return determinant_bound(corner, mid);
+    return determinant_of(corner, mid);
   }
 
   /// Halves the way of all bent nodes of an element that is bent too much, until none is. Elements whose nodes are all
@@ -318,7 +409,7 @@ class Raiser {
     while (!suspects.empty()) {
       parallel_for((suspects.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kChunk; i < std::min(suspects.size(), (chunk + 1) * kChunk); ++i)
-          bounds[suspects[i]] = bound_of(suspects[i]);
+          bounds[suspects[i]] = determinant_of_tet(suspects[i]).least_rel;
       });
       std::fill(moved.begin(), moved.end(), 0);
       bool any = false;
@@ -339,6 +430,71 @@ class Raiser {
           suspects.push_back(t);
     }
     for (const std::int32_t t : curved_tets_) bound_ = std::min(bound_, bounds[t]);
+  }
+
+  /// What each label still holds too much or too little is given to its curved sides, all nodes of a side between two labels
+  /// moving by the same along their normals. Nodes stay in planes across an axis.
+  void give_back_volumes(const std::map<Label, double>& wanted) {
+    std::vector<double> held(mesh_.tets.size());
+    parallel_for((held.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
+      for (std::size_t t = chunk * kChunk; t < std::min(held.size(), (chunk + 1) * kChunk); ++t)
+        held[t] = determinant_of_tet(static_cast<std::int32_t>(t)).volume;
+    });
+    std::map<Label, double> missing = wanted, push;
+    for (std::size_t t = 0; t < held.size(); ++t) missing[mesh_.labels[t]] -= held[t];
+    // Each side moves by the difference of its labels' pushes.
+    std::map<Label, std::map<Label, double>> area;
+    std::vector<Vec3> normal(mesh_.faces.size());  // twice the area
+    std::vector<char> plane(mesh_.faces.size(), 0);
+    for (std::size_t i = 0; i < mesh_.faces.size(); ++i) {
+      const InterfaceTriangle& f = mesh_.faces[i];
+      const Vec3 &a = mesh_.points[f.v[0]], &b = mesh_.points[f.v[1]], &c = mesh_.points[f.v[2]];
+      normal[i] = cross(b - a, c - a);
+      plane[i] = a.x == b.x && b.x == c.x ? 1 : a.y == b.y && b.y == c.y ? 2 : a.z == b.z && b.z == c.z ? 3 : 0;
+      if (plane[i] != 0 || f.below == f.above) continue;
+      area[f.below][f.above] += norm(normal[i]) / 2;
+      area[f.above][f.below] += norm(normal[i]) / 2;
+    }
+    for (int round = 0; round < 200; ++round)
+      for (const auto& [label, mm3] : missing) {
+        double sum = mm3, all = 0;
+        for (const auto& [other, mm2] : area[label]) sum += mm2 * push[other], all += mm2;
+        if (all > 0) push[label] = sum / all;
+      }
+    std::vector<Vec3> shift(static_cast<std::size_t>(first_));
+    std::vector<double> weight(shift.size(), 0);
+    std::vector<char> planes(shift.size(), 0);  // bits
+    for (std::size_t i = 0; i < mesh_.faces.size(); ++i)
+      for (const std::int32_t v : mesh_.faces[i].v) {
+        if (plane[i] != 0) planes[v] = static_cast<char>(planes[v] | 1 << (plane[i] - 1));
+        if (plane[i] != 0) continue;
+        shift[v] = shift[v] + (push[mesh_.faces[i].below] - push[mesh_.faces[i].above]) * normal[i];
+        weight[v] += norm(normal[i]);
+      }
+    for (std::size_t v = 0; v < shift.size(); ++v) {
+      if (weight[v] > 0) shift[v] = (1 / weight[v]) * shift[v];
+      if (planes[v] & 1) shift[v].x = 0;
+      if (planes[v] & 2) shift[v].y = 0;
+      if (planes[v] & 4) shift[v].z = 0;
+    }
+    const std::vector<Vec3> before = mesh_.points;
+    for (double share = 1; share > 0.1; share /= 2) {
+      for (std::int32_t p = 0; p < first_; ++p) {
+        mesh_.points[p] = before[p] + share * shift[p];
+        for (std::int64_t e = edges_.begin[p]; e < edges_.begin[p + 1]; ++e)
+          mesh_.points[first_ + e] = before[first_ + e] + 0.5 * share * (shift[p] + shift[edges_.larger[e]]);
+      }
+      std::vector<double> least((mesh_.tets.size() + kChunk - 1) / kChunk, 1);
+      parallel_for(least.size(), o_.threads, [&](std::size_t chunk) {
+        for (std::size_t t = chunk * kChunk; t < std::min(held.size(), (chunk + 1) * kChunk); ++t)
+          least[chunk] = std::min(least[chunk], determinant_of_tet(static_cast<std::int32_t>(t)).least_rel);
+      });
+      const double now = *std::min_element(least.begin(), least.end());
+      if (now < std::min(bound_, o_.jacobian_rel)) continue;
+      bound_ = now;
+      return;
+    }
+    mesh_.points = before;
   }
 
   static constexpr std::size_t kChunk = 1 << 12;

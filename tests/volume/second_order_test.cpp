@@ -229,6 +229,71 @@ TEST(RaiseOrder, ScalesWithTheMeshAndIgnoresThreads) {
   for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(2 * a.points[i].x, twice.points[i].x);
 }
 
+TEST(RaiseOrder, OfASurfaceOfRestoredVolumeTheNodesMoveOntoTheTrueSphere) {
+  // The flat triangles hold what a sphere of radius 10 holds, so their corners lie outside of it.
+  for (const int level : {1, 2, 3}) {
+    SCOPED_TRACE(level);
+    InterfaceComplex sphere = shapes::sphere(level, 10);
+    const auto volume_of = [](const TetMesh& mesh) { return shapes::volumes(mesh).at(1); };
+    const double exact = 4 * kPi * 1000 / 3, grow = std::cbrt(exact / volume_of(fill(sphere)));
+    for (Vec3& p : sphere.points) p = grow * p;
+    const TetMesh linear = fill(sphere);
+    ASSERT_NEAR(volume_of(linear), exact, 1e-9 * exact);
+    OrderOptions restored;
+    restored.volumes_restored = true;
+    const OrderResult r = raise_order(linear, restored), stiff = raise_order(linear);
+    EXPECT_EQ(r.moved_corners, sphere.points.size());
+    EXPECT_NEAR(curved_volume(r.mesh), exact, 1e-6 * exact);
+    EXPECT_GT(curved_volume(stiff.mesh), exact * (1 + 0.5 * 3 * (grow - 1)));  // the overshoot that this mends
+    EXPECT_GE(worst_determinant(r.mesh), 0.2 - 1e-6);
+    const auto farthest = [&](const TetMesh& mesh) {
+      double most = 0;
+      std::set<std::pair<int, int>> edges;
+      for (const InterfaceTriangle& f : mesh.faces)
+        for (int k = 0; k < 3; ++k) edges.insert(std::minmax(f.v[k], f.v[(k + 1) % 3]));
+      for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+        for (int k = 0; k < 6; ++k)
+          if (edges.count(std::minmax(mesh.tets[t][kEdges[k][0]], mesh.tets[t][kEdges[k][1]])))
+            for (const int v : {mesh.mid[t][k], mesh.tets[t][kEdges[k][0]], mesh.tets[t][kEdges[k][1]]}) most = std::max(most, std::abs(norm(mesh.points[v]) - 10));
+      return most;
+    };
+    EXPECT_LT(farthest(r.mesh), 0.2 * farthest(stiff.mesh));
+  }
+}
+
+TEST(RaiseOrder, OfRestoredVolumesEveryLabelKeepsItsOwnAndCapsStayPlane) {
+  const InterfaceComplex complex = cylinder(24, 6, 6, 9);
+  TetMesh linear = fill(complex);
+  OrderOptions restored;
+  restored.volumes_restored = true;
+  const OrderResult r = raise_order(linear, restored);
+  const double flat = shapes::volumes(linear).at(1);
+  EXPECT_NEAR(curved_volume(r.mesh), flat, 1e-4 * flat);
+  EXPECT_GT(r.moved_corners, 0u);
+  for (std::size_t p = 0; p < linear.points.size(); ++p)
+    if (linear.points[p].z == 0.3 || linear.points[p].z == complex.points[24 * 6].z) {
+      EXPECT_EQ(r.mesh.points[p].z, linear.points[p].z);
+    }
+  // Two spheres, one in the other: the inner side is of two labels.
+  InterfaceComplex nested = shapes::sphere(2, 10, 1);
+  InterfaceComplex inner = shapes::sphere(1, 5, 2, 1);
+  const int offset = static_cast<int>(nested.points.size());
+  nested.points.insert(nested.points.end(), inner.points.begin(), inner.points.end());
+  for (InterfaceTriangle t : inner.triangles) {
+    for (auto& v : t.v) v += offset;
+    nested.triangles.push_back(t);
+  }
+  linear = fill(nested);
+  const TetMesh both = raise_order(linear, restored).mesh;
+  for (const Label label : {1, 2}) {
+    TetMesh part = both;
+    part.tets.clear(), part.mid.clear();
+    for (std::size_t t = 0; t < both.tets.size(); ++t)
+      if (both.labels[t] == label) part.tets.push_back(both.tets[t]), part.mid.push_back(both.mid[t]);
+    EXPECT_NEAR(curved_volume(part), shapes::volumes(linear).at(label), 1e-5 * shapes::volumes(linear).at(label)) << label;
+  }
+}
+
 TEST(RaiseOrder, RefusesASecondTimeAndPointsThatAreNotThere) {
   const TetMesh raised = raise_order(fill(shapes::sphere(0, 1))).mesh;
   EXPECT_THROW(raise_order(raised), Error);
