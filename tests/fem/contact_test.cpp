@@ -43,7 +43,7 @@ TEST_P(ContactOrders, ThreeTiedPartsThatMeetInALineAnswerAsOneBlock) {
                         "loaded": [{"set": "cap_high", "force_N": [0, 0, 40]}]})");
   fem("three.vtu --parts A=3 B=1 C=2" + order() + kSides + "--materials law.json -o three.inp -o three.feb -o three.bdf");
   for (const char* deck : {"three.feb", "three.bdf"})
-    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' " + std::string(deck), "deck"), 0) << read("deck.log");
+    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' " + std::string(deck) + " tied", "deck"), 0) << read("deck.log");
   EXPECT_NE(read("three.feb").find("type=\"tied-elastic\""), std::string::npos);
   solve("three");
   expect_answer("uniform three.frd 1000 0.3 10 6");

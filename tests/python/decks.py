@@ -4,7 +4,7 @@
 usage: decks.py FOLDER     all of FOLDER/expected.json's files: {"points", "tets", "triangles", "labels": {number: count},
                            "order", "volume", "files": [...]}
        decks.py FILE.feb   structure only: well-formed, every reference names what exists, faces are faces of elements
-       decks.py FILE.bdf   structure of ties: every node follows one other at its own place, that follows none
+       decks.py FILE.bdf   every card by its fields, every reference; with `tied` all nodes at one place must follow one of them
 
 Mid-side nodes must lie near the middle of the edge that the format says they are on. Exits 77 without meshio or VTK.
 """
@@ -19,6 +19,9 @@ try:
     import numpy as np
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
+
+    import febio_rules
+    import nastran_rules
 except ImportError as error:
     print(f"SKIPPED: {error}")
     sys.exit(77)
@@ -63,11 +66,8 @@ def check_mesh(name, expected, points, tets, labels=None, triangles=None):
 
 def read_feb(path):
     root = ET.parse(path).getroot()
-    need(root.tag == "febio_spec" and root.get("version") == "4.0", "febio_spec version 4.0")
-    order = [child.tag for child in root]
-    known = ["Module", "Control", "Globals", "Material", "Mesh", "MeshDomains", "MeshData", "Boundary", "Loads", "Contact", "LoadData", "Output"]
-    need(order == [t for t in known if t in order], f"sections {order}")
-    need(root.find("Module").get("type") == "solid", "Module type")
+    wrong = febio_rules.check(root)
+    need(not wrong, f"{path}: {wrong[:5]}")
     mesh = root.find("Mesh")
     points = np.array([[float(v) for v in n.text.split(",")] for n in mesh.find("Nodes")])
     ids = [int(n.get("id")) for n in mesh.find("Nodes")]
@@ -112,15 +112,6 @@ def read_feb(path):
                      f"mid-side node of a face of {s.get('name')}")
     for pair in mesh.findall("SurfacePair"):
         need(pair.find("primary").text in surfaces and pair.find("secondary").text in surfaces, f"pair {pair.get('name')}")
-    pairs = [pair.get("name") for pair in mesh.findall("SurfacePair")]
-    contact_parameters = {"tied-elastic": {"laugon", "tolerance", "gaptol", "penalty", "auto_penalty", "two_pass", "knmult", "search_tol",
-                                           "symmetric_stiffness", "search_radius", "minaug", "maxaug"}}
-    contact_parameters["sliding-elastic"] = contact_parameters["tied-elastic"] | {"fric_coeff", "node_reloc", "seg_up", "tension", "smooth_aug"}
-    for c in root.iter("contact"):
-        need(c.get("surface_pair") in pairs, f"contact {c.get('name')}")
-        need(c.get("type") in contact_parameters, f"contact type {c.get('type')}")
-        need({p.tag for p in c} <= contact_parameters[c.get("type")], f"parameters of contact {c.get('name')}")
-        need(c.find("laugon").text in ("PENALTY", "AUGLAG") and float(c.find("penalty").text) > 0, "laugon, penalty")
     need(len({c.get("surface_pair") for c in root.iter("contact")}) == len(list(root.iter("contact"))), "a pair is in contact twice")
     materials = {}
     maps = {d.get("name"): d for d in root.iter("ElementData")}
@@ -153,34 +144,19 @@ def read_feb(path):
     return points, tets, domains, sets, surfaces
 
 
-def check_bdf_ties(path):
-    points, ties, held = {}, {}, {}
-    with open(path) as file:
-        lines = file.read().split("\n")
-    for i, line in enumerate(lines):
-        if line.startswith("GRID*"):
-            points[int(line[8:24])] = np.array([float(line[40:56]), float(line[56:72]), float(lines[i + 1][8:24])])
-        elif line.startswith("SPC1"):
-            for k in range(24, len(line), 8):
-                held.setdefault(int(line[k:k + 8]), set()).update(line[16:24].strip())
-    for line in lines:
-        if line.startswith("RBE2"):
-            node, axes, copy = int(line[16:24]), line[24:32].strip(), int(line[32:40])
-            need(copy not in ties, f"node {copy} follows twice")
-            need((points[copy] == points[node]).all(), f"nodes {copy} and {node} are apart")
-            need(set(axes) | held.get(copy, set()) == set("123") and not set(axes) & held.get(copy, set()), f"axes of node {copy}")
-            ties[copy] = node
-    need(ties and not set(ties) & set(ties.values()), "a node that is followed follows")
-    numbers = [int(line[8:16]) for line in lines if line.startswith(("CTETRA", "RBE2"))]
-    need(len(set(numbers)) == len(numbers), "an element number is there twice")
-    places = {}
-    for node, p in points.items():
-        places.setdefault(tuple(p), []).append(node)
-    for nodes in places.values():
-        roots = {ties.get(n, n) for n in nodes}
-        free = [n for n in roots if held.get(n, set()) != set("123")]
-        need(len(roots) == 1 or len(free) <= 1, f"nodes {nodes} are not joined")
-    print(f"ok {len(ties)} nodes tied")
+def check_bdf(path, tied):
+    wrong, deck = nastran_rules.check(path)
+    need(not wrong, f"{path}: {wrong}")
+    if tied:
+        need(deck["followers"], "nothing is tied")
+        places = {}
+        for node, p in deck["nodes"].items():
+            places.setdefault(p, []).append(node)
+        for nodes in places.values():
+            roots = {deck["followers"].get(n, (n, None))[0] for n in nodes}
+            free = [n for n in roots if deck["held"].get(n, set()) != set("123")]
+            need(len(roots) == 1 or len(free) <= 1, f"nodes {nodes} are not joined")
+    print(f"ok {len(deck['nodes'])} nodes, {len(deck['elements'])} elements, {len(deck['followers'])} nodes tied")
 
 
 def vtk_mesh(path):
@@ -210,7 +186,7 @@ def main():
         print(f"ok {len(points)} nodes, {len(tets)} tets, {len(domains)} domains, {len(sets)} node sets, {len(surfaces)} surfaces")
         return
     if sys.argv[1].endswith(".bdf"):
-        check_bdf_ties(sys.argv[1])
+        check_bdf(sys.argv[1], "tied" in sys.argv[2:])
         return
     folder = sys.argv[1]
     with open(os.path.join(folder, "expected.json")) as file:
