@@ -38,6 +38,16 @@ std::function<std::optional<int>(const Vec3&)> section_finder(const Judged& j) {
 
 }  // namespace
 
+void add_label_rows(RunReport& report, const std::vector<LabelInfo>& labels) {
+  for (const LabelInfo& l : labels) {
+    LabelReport row;
+    row.label = l.number;
+    row.name = l.name;
+    row.colour = l.colour;
+    report.labels.push_back(std::move(row));
+  }
+}
+
 void check_mesh(RunReport& report, const InterfaceComplex& surface, const TetMesh* mesh, int threads) {
   SurfaceCheckOptions check;
   check.threads = threads;

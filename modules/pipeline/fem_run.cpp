@@ -187,13 +187,7 @@ class FemRun {
       mesh.mid.clear();
       report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
     }
-    for (const LabelInfo& l : product.labels) {
-      LabelReport row;
-      row.label = l.number;
-      row.name = l.name;
-      row.colour = l.colour;
-      report.labels.push_back(row);
-    }
+    add_label_rows(report, product.labels);
     // A mesh whose parts have nodes of their own is judged as one body.
     TetMesh whole = mesh;
     if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {

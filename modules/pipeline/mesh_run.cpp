@@ -90,13 +90,7 @@ class MeshRun {
       fail_usage("--space ras needs an input with anatomical axes", input_.path, "leave --space out: coordinates are kept as they are");
     world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;
     report_.input.space = anatomical ? o_.space : "none";
-    for (const LabelInfo& l : input_.labels) {
-      LabelReport row;
-      row.label = l.number;
-      row.name = l.name;
-      row.colour = l.colour;
-      report_.labels.push_back(row);
-    }
+    add_label_rows(report_, input_.labels);
     if (!input_.volume) return;
     const LabelVolume& v = *input_.volume;
     report_.input.dimensions = v.size;

@@ -12,9 +12,9 @@
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/turn_as_a_whole.h"
 #include "report/html_report.h"
 #include "validate/defects.h"
-#include "validate/exact.h"
 #include "validate/overlap.h"
 
 namespace stackmesh {
@@ -119,61 +119,8 @@ class ValidateRun {
     has_faces_ = !tets_.faces.empty();
   }
 
-  /// Some programs number a tet's nodes the other way, or let normals point inwards; a mirrored frame does the same. What
-  /// is the same everywhere is no defect.
   void turn_round() {
-    if (!tets_.tets.empty()) {
-      std::size_t negative = 0, positive = 0;
-      for (const auto& t : tets_.tets) {
-        const int sign = exact_orientation(tets_.points[t[0]], tets_.points[t[1]], tets_.points[t[2]], tets_.points[t[3]]);
-        negative += sign < 0, positive += sign > 0;
-      }
-      if (negative > positive) {
-        for (std::size_t t = 0; t < tets_.tets.size(); ++t) stackmesh::turn_round(tets_, t);
-        warn("most tetrahedra (" + std::to_string(negative) + " of " + std::to_string(tets_.tets.size()) +
-             ") number their nodes the other way round, as a mirrored frame does; all were turned, and the rest counts as inverted");
-      }
-      surface_.points = tets_.points;
-      surface_.triangles = faces_of_tets(tets_);
-      // Faces of the file that all run the other way follow their tets.
-      if (has_faces_) turn_faces();
-      else tets_.faces = surface_.triangles;
-    } else {
-      double volume = 0;
-      const Vec3 o = surface_.points.empty() ? Vec3{} : surface_.points[0];
-      for (const InterfaceTriangle& t : surface_.triangles) {
-        const Vec3 a = surface_.points[t.v[0]] - o, b = surface_.points[t.v[1]] - o, c = surface_.points[t.v[2]] - o;
-        const double part = dot(a, cross(b, c)) / 6;
-        volume += (t.below != 0 ? part : 0) - (t.above != 0 ? part : 0);
-      }
-      if (volume < 0) {
-        for (InterfaceTriangle& t : surface_.triangles) std::swap(t.v[1], t.v[2]);
-        warn("the triangles face inwards, as in a mirrored frame: all were turned round");
-      }
-    }
-  }
-
-  void turn_faces() {
-    std::map<std::array<std::int32_t, 3>, const InterfaceTriangle*> known;
-    for (const InterfaceTriangle& t : surface_.triangles) {
-      auto key = t.v;
-      std::sort(key.begin(), key.end());
-      known[key] = &t;
-    }
-    std::size_t against = 0, with = 0;
-    for (const InterfaceTriangle& t : tets_.faces) {
-      auto key = t.v;
-      std::sort(key.begin(), key.end());
-      const auto it = known.find(key);
-      if (it == known.end()) continue;
-      const auto& w = it->second->v;
-      const std::size_t at = static_cast<std::size_t>(std::find(w.begin(), w.end(), t.v[0]) - w.begin());
-      const bool same = (w[(at + 1) % 3] == t.v[1]) == (it->second->below == t.below);
-      (same ? with : against) += 1;
-    }
-    if (against <= with) return;
-    for (InterfaceTriangle& t : tets_.faces) std::swap(t.v[1], t.v[2]);
-    warn("the interface triangles run against the tetrahedra, as in a mirrored frame: all were turned round");
+    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_)) warn(note);
   }
 
   // ---- frame
@@ -305,12 +252,7 @@ class ValidateRun {
       if (from != target && file_.label_source != LabelSource::none && to.size() < 12) text += ", " + std::to_string(from) + " stands for " + std::to_string(target);
     report_.mesh->labels = text + matched_;
     rename(to);
-    for (const LabelInfo& l : labels_) {
-      LabelReport row;
-      row.label = l.number;
-      row.name = l.name;
-      report_.labels.push_back(row);
-    }
+    add_label_rows(report_, labels_);
   }
 
   std::string source_text() const {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.h"
 #include "stitch/planar.h"
 #include "stitch/segment_distance.h"
+#include "stitch/sheet_layers.h"
 
 namespace stackmesh {
 namespace {
@@ -164,12 +164,7 @@ class SlabStitcher {
   /// are ordered so that they do, or share their rim where either order would join something. Layers are that order.
   void order_sheets() {
     std::vector<std::pair<std::int32_t, std::int32_t>> below;  // (lower sheet, higher sheet)
-    std::vector<std::int32_t> root(sheets_.size());            // sheets that share their rims
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](std::int32_t s) {
-      while (root[s] != s) s = root[s] = root[root[s]];
-      return s;
-    };
+    DisjointSets same(sheets_.size());                         // sheets that share their rims
     for (const FaceHandle f : cdt().finite_face_handles()) {
       const PlanarFace& left = f->info();
       if (!left.in_domain()) continue;
@@ -178,43 +173,13 @@ class SlabStitcher {
         if (left.edge[i] != kBoth || !right.in_domain() || left.sheet >= right.sheet) continue;
         const bool not_beneath = left.upper == right.lower && left.upper != 0;  // left beneath right would join a label
         const bool not_above = left.lower == right.upper && left.lower != 0;
-        if (not_beneath && not_above) root[std::max(find(left.sheet), find(right.sheet))] = std::min(find(left.sheet), find(right.sheet));
+        if (not_beneath && not_above) same.join(left.sheet, right.sheet);
         else if (not_beneath) below.emplace_back(right.sheet, left.sheet);
         else if (not_above) below.emplace_back(left.sheet, right.sheet);
       }
     }
-    if (below.empty()) return;
-    const auto to_roots = [&] {
-      for (auto& b : below) b = {find(b.first), find(b.second)};
-      below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }), below.end());
-      std::sort(below.begin(), below.end());
-      below.erase(std::unique(below.begin(), below.end()), below.end());
-    };
-    to_roots();
-    // Wishes that contradict each other in a cycle: those sheets share their rims, where nothing grows together.
-    for (const auto& b : in_cycles(below)) root[std::max(find(b.first), find(b.second))] = std::min(find(b.first), find(b.second));
-    to_roots();
-    for (bool rising = true; rising;) {  // longest paths
-      rising = false;
-      for (const auto& b : below)
-        if (sheets_[b.second].layer <= sheets_[b.first].layer) {
-          sheets_[b.second].layer = sheets_[b.first].layer + 1;
-          rising = true;
-        }
-    }
-    for (std::size_t s = 0; s < sheets_.size(); ++s) sheets_[s].layer = sheets_[find(static_cast<std::int32_t>(s))].layer;
-  }
-
-  /// The pairs left when all that nothing passes beneath, and all that passes beneath nothing, is taken away.
-  std::vector<std::pair<std::int32_t, std::int32_t>> in_cycles(std::vector<std::pair<std::int32_t, std::int32_t>> pairs) const {
-    for (std::size_t before = pairs.size() + 1; pairs.size() < before;) {
-      before = pairs.size();
-      std::vector<char> has_lower(sheets_.size(), 0), has_higher(sheets_.size(), 0);
-      for (const auto& p : pairs) has_higher[p.first] = has_lower[p.second] = 1;
-      pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [&](const auto& p) { return !has_lower[p.first] || !has_higher[p.second]; }),
-                  pairs.end());
-    }
-    return pairs;
+    const std::vector<int> layers = sheet_layers(std::move(below), std::move(same));
+    for (std::size_t s = 0; s < sheets_.size(); ++s) sheets_[s].layer = layers[s];
   }
 
   std::int32_t copy_index(std::int32_t vertex, std::int32_t sheet) {

@@ -17,26 +17,6 @@ int run(const std::string& command) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// A node on every edge, a little off its middle, each edge by another vector.
-TetMesh second_order(TetMesh mesh) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> nodes;
-  for (const auto& t : mesh.tets) {
-    std::array<std::int32_t, 6> mid{};
-    for (int e = 0; e < 6; ++e) {
-      const auto key = std::minmax(t[kTetEdges[e][0]], t[kTetEdges[e][1]]);
-      const auto [at, fresh] = nodes.insert({key, static_cast<std::int32_t>(mesh.points.size())});
-      if (fresh) {
-        const Vec3 a = mesh.points[key.first], b = mesh.points[key.second];
-        const double s = 0.01 * std::sin(7.0 * at->second);
-        mesh.points.push_back(0.5 * (a + b) + Vec3{s, -s, 0.5 * s});
-      }
-      mid[e] = at->second;
-    }
-    mesh.mid.push_back(mid);
-  }
-  return mesh;
-}
-
 int check_formats(const TetMesh& mesh, int order, const std::vector<std::string>& names) {
   const std::string folder = testing::TempDir() + "stackmesh_decks_" + std::to_string(order);
   ::mkdir(folder.c_str(), 0777);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "meshio/write_mesh.h"
+#include "blocks.h"
 #include "model/complex.h"
 #include "model/tet_mesh.h"
 
@@ -19,34 +20,16 @@ namespace stackmesh {
 /// Every second interface triangle is given the other way round (below and above swapped, wound backwards),
 /// and one point is used by nothing.
 inline TetMesh sample_mesh(int n = 4) {
-  TetMesh mesh;
-  const auto id = [n](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };
-  const double c = std::cos(0.3), s = std::sin(0.3);
-  for (int k = 0; k <= n; ++k)
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) {
-        const double x = i * 0.7 - 1, y = j / 3.0, z = k * 1.1 - 2e-5;
-        mesh.points.push_back({c * x - s * y - 123.4, s * x + c * y, z});
-      }
   const auto label = [n](int i, int j, int k) {
     const auto inside = [n](int a) { return a >= n / 4 && a < n - n / 4; };
     return inside(i) && inside(j) && inside(k) ? 12 : i < n / 2 ? 3 : 7;
   };
-  constexpr int paths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
-  for (int k = 0; k < n; ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i)
-        for (int p = 0; p < 6; ++p) {
-          std::array<int, 3> at = {i, j, k};
-          std::array<std::int32_t, 4> tet = {id(i, j, k), 0, 0, 0};
-          for (int step = 0; step < 3; ++step) {
-            ++at[paths[p][step]];
-            tet[step + 1] = id(at[0], at[1], at[2]);
-          }
-          if (p >= 3) std::swap(tet[2], tet[3]);
-          mesh.tets.push_back(tet);
-          mesh.labels.push_back(label(i, j, k));
-        }
+  TetMesh mesh = blocks::block(n, n, n, {1, 1, 1}, label);
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  for (Vec3& p : mesh.points) {
+    const double x = p.x * 0.7 - 1, y = p.y / 3.0;
+    p = {c * x - s * y - 123.4, s * x + c * y, p.z * 1.1 - 2e-5};
+  }
   // A face seen from inside its tet, wound outward, with the labels of both its sides.
   struct Side {
     std::array<std::int32_t, 3> v;
@@ -76,24 +59,26 @@ inline TetMesh sample_mesh(int n = 4) {
   return mesh;
 }
 
-/// The sample with mid-side nodes, each a little off the middle of its edge, in its own direction.
-inline TetMesh second_order_sample(int n = 4) {
-  TetMesh mesh = sample_mesh(n);
-  std::map<std::array<std::int32_t, 2>, std::int32_t> nodes;
-  mesh.mid.resize(mesh.tets.size());
-  constexpr int edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    for (int k = 0; k < 6; ++k) {
-      const std::int32_t a = mesh.tets[t][edges[k][0]], b = mesh.tets[t][edges[k][1]];
-      const auto [at, fresh] = nodes.insert({{std::min(a, b), std::max(a, b)}, static_cast<std::int32_t>(mesh.points.size())});
+/// The mesh with mid-side nodes, each a little off the middle of its edge, in its own direction.
+inline TetMesh second_order(TetMesh mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> nodes;
+  for (const auto& t : mesh.tets) {
+    std::array<std::int32_t, 6> mid{};
+    for (int e = 0; e < 6; ++e) {
+      const auto key = std::minmax(t[kTetEdges[e][0]], t[kTetEdges[e][1]]);
+      const auto [at, fresh] = nodes.insert({key, static_cast<std::int32_t>(mesh.points.size())});
       if (fresh) {
         const double way = 0.01 * std::sin(static_cast<double>(mesh.points.size()));
-        mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]) + way * Vec3{1, -2, 3});
+        mesh.points.push_back(0.5 * (mesh.points[key.first] + mesh.points[key.second]) + way * Vec3{1, -2, 3});
       }
-      mesh.mid[t][k] = at->second;
+      mid[e] = at->second;
     }
+    mesh.mid.push_back(mid);
+  }
   return mesh;
 }
+
+inline TetMesh second_order_sample(int n = 4) { return second_order(sample_mesh(n)); }
 
 inline InterfaceComplex sample_surface(const TetMesh& mesh) {
   return {mesh.points, mesh.faces};
