@@ -23,7 +23,7 @@ TriangleGrid::Box TriangleGrid::box_of(const Corners3& c, double margin) {
 }
 
 void TriangleGrid::build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm,
-                         std::vector<float> margins) {
+                         std::vector<float> clearance) {
   inverse_ = static_cast<float>(1 / cell_mm);
   std::size_t size = 1024;
   while (size < mesh.triangles.size()) size *= 2;
@@ -31,7 +31,7 @@ void TriangleGrid::build(const ComplexMesh& mesh, const std::vector<Vec3>& point
   blocks_.assign(size, {});
   spare_.clear();
   boxes_.assign(mesh.triangles.size(), Box());
-  margins_ = std::move(margins);
+  clearance_ = std::move(clearance);
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t)
     if (mesh.alive(t)) {
       const auto& v = mesh.triangles[t].v;
@@ -73,7 +73,7 @@ void TriangleGrid::drop(std::size_t bucket, std::int32_t t) {
 
 void TriangleGrid::insert(std::int32_t t, const Corners3& corners) {
   if (static_cast<std::size_t>(t) >= boxes_.size()) boxes_.resize(t + 1 + t / 4);
-  Box& box = boxes_[t] = box_of(corners, margins_.empty() ? 0.0 : margins_[t]);
+  Box& box = boxes_[t] = box_of(corners, clearance_.empty() ? 0.0 : 0.5 * clearance_[t]);
   box.cell = {cell(box.low[0]), cell(box.low[1]), cell(box.low[2])};
   each_cell(boxes_[t], [&](std::size_t b) { push(b, t); });
 }
@@ -198,7 +198,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
     const SharedCorners h = shared_corners(mesh.triangles[i].v, mesh.triangles[j].v);
     const Corners3 s = at(points, i), t = at(points, j);
     if (h.count == 0) {
-      const double gap = std::max(clearance[i], clearance[j]);
+      const double gap = 0.5 * (clearance[i] + clearance[j]);
       if (certainly_apart(s, t, gap)) return false;
       if (triangles_meet(s, t, h)) return true;
       const double d = squared_distance(s, t);
@@ -252,7 +252,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
       const std::int32_t i = suspects[n];
       if (spoiled(i)) mine.push_back(i);
       if (by_bucket) continue;
-      grid.query(at(points, i), clearance[i], [&](std::int32_t j) {
+      grid.query(at(points, i), 0.5 * clearance[i], [&](std::int32_t j) {
         if (j != i && !(is_suspect[j] && j < i)) test(std::min(i, j), std::max(i, j));
         return true;
       });

@@ -13,9 +13,9 @@ namespace stackmesh {
 /// Triangles by the cells of a hashed grid. Queries may run in parallel.
 class TriangleGrid {
  public:
-  /// Takes all triangles of the mesh that are alive, with their corners at `points`; a triangle's box is wider by its
-  /// margin to all sides (empty: by none).
-  void build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm, std::vector<float> margins = {});
+  /// Takes all triangles of the mesh that are alive, with their corners at `points`; a triangle's box is wider by half
+  /// its clearance to all sides (empty: by none).
+  void build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm, std::vector<float> clearance = {});
   void insert(std::int32_t t, const Corners3& corners);
   void remove(std::int32_t t);
 
@@ -71,7 +71,7 @@ class TriangleGrid {
   std::vector<Block> blocks_;
   std::vector<std::int32_t> spare_;  ///< blocks that are not used
   std::vector<Box> boxes_;
-  std::vector<float> margins_;
+  std::vector<float> clearance_;
 };
 
 /// A change that is asked for: triangles that go, corners of those that come, and one vertex at a new place
@@ -125,12 +125,12 @@ struct MoveLimits {
   double turn_deg = 0;          ///< a triangle's normal turns by no more; 0: any turn is allowed
 };
 
-/// For every triangle the distance that others have to keep from it, mm.
+/// For every triangle the distance that others have to keep from it, mm; two keep the mean of theirs.
 std::vector<float> clearances(const ComplexMesh& mesh, const MoveLimits& limits);
 
 /// Numbers of the triangles among `suspects` (and of those they meet) that cross or offend a limit with the
 /// corners at `points`, `before` being the places that are known to be good; the grid holds the triangles at `points` with
-/// their clearances as margins. Ascending; independent of the
+/// their clearances. Ascending; independent of the
 /// thread count.
 std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<float>& clearance,
                                          const std::vector<Vec3>& before, const std::vector<Vec3>& points,

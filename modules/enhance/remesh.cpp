@@ -27,7 +27,7 @@ class Remesher {
     split_long();
     collapse_short(std::vector<double>(number == 0 ? 8 : 3, 1 / kSqrt2), (number == 0 ? 8 : 15) * kDegree);
     flip_all(2 * kDegree, number + 1 < o_.rounds, 2);
-    relocate_all(number + 2 < o_.rounds ? 1 : 2);
+    for (int pass = 0; pass < (number + 2 < o_.rounds ? 1 : 2); ++pass) move(relocated());
   }
 
   void coarsen() {
@@ -38,7 +38,10 @@ class Remesher {
 
   void fit(int passes) {
     last_.assign(mesh_.triangles.size(), {-1, -1, -1});
-    for (int pass = 0; pass < passes; ++pass) fit_reference();
+    std::vector<Vec3> to = mesh_.points;  // the guard judges what all steps come to
+    for (int pass = 0; pass < passes; ++pass) mesh_.points = fitted();
+    std::swap(to, mesh_.points);
+    move(to);
   }
 
   void finish(int sweeps) {
@@ -144,20 +147,20 @@ class Remesher {
     }
   }
 
+  /// Places of all vertices: `target` of a vertex that may move.
   template <class Target>
-  void move_all(Target target) {
+  std::vector<Vec3> places(Target target) const {
     std::vector<Vec3> to = mesh_.points;
-    constexpr std::size_t kChunk = 512;
-    parallel_for((to.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
-      for (std::size_t v = chunk * kChunk; v < std::min(to.size(), (chunk + 1) * kChunk); ++v)
-        if (!mesh_.star[v].empty() && !mesh_.is_held(static_cast<std::int32_t>(v)) &&
-            !mesh_.is_fixed(static_cast<std::int32_t>(v))) {
-          const Vec3 p = target(static_cast<std::int32_t>(v));
-          if (mesh_.contains(p)) to[v] = p;
-        }
+    for_each_index(to.size(), o_.threads, [&](std::size_t n) {
+      const auto v = static_cast<std::int32_t>(n);
+      if (mesh_.star[v].empty() || mesh_.is_held(v) || mesh_.is_fixed(v)) return;
+      const Vec3 p = target(v);
+      if (mesh_.contains(p)) to[v] = p;
     });
-    ops_.counts.relocations += move_guarded(mesh_, to, limits(), o_.threads).moved;
+    return to;
   }
+
+  void move(const std::vector<Vec3>& to) { ops_.counts.relocations += move_guarded(mesh_, to, limits(), o_.threads).moved; }
 
   MoveLimits limits() const {
     MoveLimits keep;
@@ -170,61 +173,58 @@ class Remesher {
   }
 
   /// To the centroid of the star (curves: between the neighbours), on the reference.
-  void relocate_all(int passes) {
-    for (int pass = 0; pass < passes; ++pass)
-      move_all( [&](std::int32_t v) {
-        const Vec3 here = mesh_.points[v];
-        Vec3 sum;
-        double weight = 0;
-        if (!mesh_.curve[v].empty()) {
-          for (std::int32_t c : mesh_.curve[v]) {
-            const double w = norm(mesh_.points[c] - here) / (size_[c] + size_[v]);
-            sum = sum + w * mesh_.points[c];
-            weight += w;
-          }
-        } else {
-          for (std::int32_t t : mesh_.star[v]) {
-            const auto& c = mesh_.triangles[t].v;
-            const double s = size_[c[0]] + size_[c[1]] + size_[c[2]];
-            const double w = norm(mesh_.area_vector(c)) / (s * s);
-            sum = sum + (w / 3) * (mesh_.points[c[0]] + mesh_.points[c[1]] + mesh_.points[c[2]]);
-            weight += w;
-          }
+  std::vector<Vec3> relocated() const {
+    return places([&](std::int32_t v) {
+      const Vec3 here = mesh_.points[v];
+      Vec3 sum;
+      double weight = 0;
+      if (!mesh_.curve[v].empty()) {
+        for (std::int32_t c : mesh_.curve[v]) {
+          const double w = norm(mesh_.points[c] - here) / (size_[c] + size_[v]);
+          sum = sum + w * mesh_.points[c];
+          weight += w;
         }
-        if (!(weight > 0)) return here;
-        const Vec3 p = (1 / weight) * sum;
-        if (norm(p - here) < 0.02 * size_[v]) return here;
-        return ops_.drawn_to_reference(v, mesh_.curve[v].empty() ? p : here + 0.5 * (p - here));
-      });
-  }
-
-  /// A step of a fit to the reference: vertices move by the mean distance, along the triangles' normals, of samples on
-  /// their triangles, weighted by the vertex's share in the sample; over-relaxed, as neighbours move alike.
-  void fit_reference() {
-    static constexpr double kAt[3][3] = {{2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
-    constexpr double kOverRelaxed = 2;
-    std::vector<std::array<double, 3>> off(mesh_.triangles.size(), {0, 0, 0});  // per corner: mean distance
-    constexpr std::size_t kChunk = 512;
-    parallel_for((off.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
-      for (std::size_t t = chunk * kChunk; t < std::min(off.size(), (chunk + 1) * kChunk); ++t) {
-        const MeshTriangle& m = mesh_.triangles[t];
-        if (m.patch < 0 || mesh_.is_cap(m.patch)) continue;
-        const Vec3 a = mesh_.area_vector(m.v);
-        const double l = norm(a), reach = size_[m.v[0]];
-        if (!(l > 0)) continue;
-        for (int i = 0; i < 3; ++i) {
-          const auto& w = kAt[i];
-          Vec3 p;
-          for (int k = 0; k < 3; ++k) p = p + w[k] * mesh_.points[m.v[k]];
-          const auto foot = reference_.nearest(p, m.patch, reach, last_[t][i] >= 0 ? last_[t][i] : ops_.hints[m.v[i]], 0.3 * reach);
-          if (!foot) continue;
-          last_[t][i] = foot->face;
-          const double d = dot(foot->point - p, (1 / l) * a);
-          for (int k = 0; k < 3; ++k) off[t][k] += w[k] * d;  // the shares of a corner add up to one
+      } else {
+        for (std::int32_t t : mesh_.star[v]) {
+          const auto& c = mesh_.triangles[t].v;
+          const double s = size_[c[0]] + size_[c[1]] + size_[c[2]];
+          const double w = norm(mesh_.area_vector(c)) / (s * s);
+          sum = sum + (w / 3) * (mesh_.points[c[0]] + mesh_.points[c[1]] + mesh_.points[c[2]]);
+          weight += w;
         }
       }
+      if (!(weight > 0)) return here;
+      const Vec3 p = (1 / weight) * sum;
+      if (norm(p - here) < 0.02 * size_[v]) return here;
+      return ops_.drawn_to_reference(v, mesh_.curve[v].empty() ? p : here + 0.5 * (p - here));
     });
-    move_all( [&](std::int32_t v) {
+  }
+
+  /// Places after a step of a fit to the reference: vertices move by the mean distance, along the triangles' normals, of
+  /// samples on their triangles, weighted by the vertex's share in the sample; over-relaxed, as neighbours move alike.
+  std::vector<Vec3> fitted() {
+    static constexpr double kAt[3][3] = {{2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
+    constexpr double kOverRelaxed = 2, kTrust = 0.3;
+    std::vector<std::array<double, 3>> off(mesh_.triangles.size(), {0, 0, 0});  // per corner: mean distance
+    for_each_index(off.size(), o_.threads, [&](std::size_t t) {
+      const MeshTriangle& m = mesh_.triangles[t];
+      if (m.patch < 0 || mesh_.is_cap(m.patch)) return;
+      const Vec3 a = mesh_.area_vector(m.v);
+      const double l = norm(a), reach = size_[m.v[0]];
+      if (!(l > 0)) return;
+      for (int i = 0; i < 3; ++i) {
+        const auto& w = kAt[i];
+        Vec3 p;
+        for (int k = 0; k < 3; ++k) p = p + w[k] * mesh_.points[m.v[k]];
+        const std::int32_t hint = last_[t][i] >= 0 ? last_[t][i] : ops_.hints[m.v[i]];
+        const auto foot = reference_.nearest(p, m.patch, reach, hint, kTrust * reach);
+        if (!foot) continue;
+        last_[t][i] = foot->face;
+        const double d = dot(foot->point - p, (1 / l) * a);
+        for (int k = 0; k < 3; ++k) off[t][k] += w[k] * d;  // the shares of a corner add up to one
+      }
+    });
+    return places([&](std::int32_t v) {
       Vec3 sum;
       double weight = 0;
       for (std::int32_t t : mesh_.star[v]) {
@@ -234,10 +234,10 @@ class Remesher {
         sum = sum + off[t][k] * a;
         weight += norm(a);
       }
-      Vec3 move = weight > 0 ? (kOverRelaxed / weight) * sum : Vec3{};
-      if (mesh_.flat[v]) move.z = 0;
-      const double l = norm(move), most = 0.2 * size_[v];
-      return mesh_.points[v] + (l > most ? most / l : 1.0) * move;
+      Vec3 step = weight > 0 ? (kOverRelaxed / weight) * sum : Vec3{};
+      if (mesh_.flat[v]) step.z = 0;
+      const double l = norm(step), most = 0.2 * size_[v];
+      return mesh_.points[v] + (l > most ? most / l : 1.0) * step;
     });
   }
 
