@@ -52,7 +52,11 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads) : points(complex.points) {
   std::map<std::pair<Label, Label>, std::int32_t> numbers;
-  for (const InterfaceTriangle& t : complex.triangles) numbers[std::minmax(t.below, t.above)] = 0;
+  std::pair<Label, Label> last = {0, 0};  // neighbours in the list mostly have the same pair
+  for (const InterfaceTriangle& t : complex.triangles) {
+    const std::pair<Label, Label> pair = std::minmax(t.below, t.above);
+    if (pair != last || numbers.empty()) numbers[last = pair] = 0;
+  }
   for (auto& [pair, n] : numbers) {
     n = static_cast<std::int32_t>(pairs_.size());
     pairs_.push_back(pair);
@@ -70,11 +74,14 @@ ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, i
   pinned.assign(points.size(), 0);
   flat.assign(points.size(), 0);
   triangles.reserve(complex.triangles.size());
+  std::int32_t number = numbers.empty() ? 0 : numbers.at(last);
   for (const InterfaceTriangle& t : complex.triangles) {
     MeshTriangle m;
     m.v = t.v;
     if (t.below > t.above) std::swap(m.v[1], m.v[2]);
-    m.patch = 2 * numbers[std::minmax(t.below, t.above)];
+    const std::pair<Label, Label> pair = std::minmax(t.below, t.above);
+    if (pair != last) number = numbers.at(last = pair);
+    m.patch = 2 * number;
     for (std::int32_t v : m.v) star[v].push_back(static_cast<std::int32_t>(triangles.size()));
     triangles.push_back(m);
   }

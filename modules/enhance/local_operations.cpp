@@ -32,11 +32,13 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   Vec3 p = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   if (mesh_.flat[a] && mesh_.flat[b] && mesh_.points[a].z == mesh_.points[b].z) p.z = mesh_.points[a].z;
   mesh_.edge_triangles(a, b, removed_);
-  const double least = 0.05 * length(a, b);  // a triangle whose third corner is that near to the middle is for a flip
+  // A triangle whose third corner is near the middle is for a flip, and so is a needle.
+  const double least = 0.05 * length(a, b);
   for (std::int32_t t : removed_) {
     if (mesh_.is_frozen(t)) return false;
     for (std::int32_t w : mesh_.triangles[t].v)
       if (w != a && w != b && norm(mesh_.points[w] - p) < least) return false;
+    if (angle(mesh_.triangles[t].v) < kNeedle) return false;
   }
   const auto n = static_cast<std::int32_t>(mesh_.points.size());
   added_.clear();

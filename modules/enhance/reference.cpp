@@ -1,6 +1,7 @@
 #include "enhance/reference.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include "base/parallel.h"
@@ -15,7 +16,7 @@ std::size_t Reference::Cells::bucket(std::int32_t i, std::int32_t j, std::int32_
 }
 
 template <class Corners>
-void Reference::Cells::build(std::size_t count, double cell_mm, Corners corners) {
+void Reference::Cells::build(std::size_t count, double cell_mm, int threads, Corners corners) {
   inverse = 1 / cell_mm;
   std::size_t size = 256;
   while (size < count) size *= 2;
@@ -31,12 +32,21 @@ void Reference::Cells::build(std::size_t count, double cell_mm, Corners corners)
       for (std::int32_t j = cell(low.y); j <= cell(high.y); ++j)
         for (std::int32_t k = cell(low.z); k <= cell(high.z); ++k) body(bucket(i, j, k));
   };
-  for (std::size_t n = 0; n < count; ++n) each_cell(n, [&](std::size_t b) { ++first[b + 1]; });
-  for (std::size_t b = 0; b < size; ++b) first[b + 1] += first[b];
+  // The order within a bucket is not defined, and does not count: of two that are as near, the lower number is taken.
+  std::vector<std::atomic<std::uint32_t>> next(size);
+  for_each_index(count, threads, [&](std::size_t n) {
+    each_cell(n, [&](std::size_t b) { next[b].fetch_add(1, std::memory_order_relaxed); });
+  });
+  for (std::size_t b = 0; b < size; ++b) {
+    first[b + 1] = first[b] + next[b];
+    next[b] = first[b];
+  }
   items.resize(first[size]);
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::size_t n = 0; n < count; ++n)
-    each_cell(n, [&](std::size_t b) { items[next[b]++] = static_cast<std::int32_t>(n); });
+  for_each_index(count, threads, [&](std::size_t n) {
+    each_cell(n, [&](std::size_t b) {
+      items[next[b].fetch_add(1, std::memory_order_relaxed)] = static_cast<std::int32_t>(n);
+    });
+  });
 }
 
 template <class Visit>
@@ -101,8 +111,8 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads) : cel
   for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
     for (std::int32_t b : mesh.curve[a])
       if (a < b) segments_.push_back({mesh.points[a], mesh.points[b], curve_key(mesh, a, b)});
-  face_cells_.build(faces_.size(), cell_mm, [&](std::size_t n) { return faces_[n].p; });
-  segment_cells_.build(segments_.size(), cell_mm, [&](std::size_t n) {
+  face_cells_.build(faces_.size(), cell_mm, threads, [&](std::size_t n) { return faces_[n].p; });
+  segment_cells_.build(segments_.size(), cell_mm, threads, [&](std::size_t n) {
     return std::array<Vec3, 2>{segments_[n].a, segments_[n].b};
   });
 }

@@ -50,7 +50,7 @@ class Reference {
     std::int32_t cell(double x) const { return static_cast<std::int32_t>(std::floor(x * inverse)); }
     std::size_t bucket(std::int32_t i, std::int32_t j, std::int32_t k) const;
     template <class Corners>
-    void build(std::size_t count, double cell_mm, Corners corners);
+    void build(std::size_t count, double cell_mm, int threads, Corners corners);
     template <class Visit>
     void around(const Vec3& p, double r, Visit visit) const;
   };

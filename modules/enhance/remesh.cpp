@@ -368,8 +368,7 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
   };
   for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });
   for (int round = 0; round < options.rounds; ++round) {
-    // The first round works on the stitched needles: sides of blocks among them would leave needles behind.
-    in_blocks(round == 0, [&](Remesher& r) { r.round(round); });
+    in_blocks(false, [&](Remesher& r) { r.round(round); });
     if (options.deviation_mm > 0 && round < 2) shorten_where_off(mesh, size, reference, options);
     progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
   }

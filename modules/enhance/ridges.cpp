@@ -10,28 +10,37 @@
 namespace stackmesh {
 namespace {
 
+/// Centre and area vector of every triangle.
+struct Facets {
+  std::vector<Vec3> centre, area;
+  Facets(const ComplexMesh& mesh, int threads) : centre(mesh.triangles.size()), area(mesh.triangles.size()) {
+    for_each_index(centre.size(), threads, [&](std::size_t t) {
+      const auto& v = mesh.triangles[t].v;
+      centre[t] = (1 / 3.0) * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]]);
+      area[t] = mesh.area_vector(v);
+    });
+  }
+};
+
 /// Mean normal of the triangles within `reach` of the edge a b that are connected to `start` and lie on its
 /// side of the edge: over treads and risers of a staircase alike.
-Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::int32_t start,
-                 std::int32_t other, double reach, std::vector<std::int32_t>& stamp, std::int32_t now) {
+Vec3 wide_normal(const ComplexMesh& mesh, const Facets& facets, std::int32_t a, std::int32_t b, std::int32_t start,
+                 std::int32_t other, double reach, std::vector<std::int32_t>& stamp, std::int32_t now,
+                 std::vector<std::int32_t>& list) {
   const Vec3 middle = 0.5 * (mesh.points[a] + mesh.points[b]), along = mesh.points[b] - mesh.points[a];
-  const auto centre = [&](std::int32_t t) {
-    const auto& v = mesh.triangles[t].v;
-    return (1 / 3.0) * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]]);
-  };
-  Vec3 across = centre(start) - centre(other);
+  Vec3 across = facets.centre[start] - facets.centre[other];
   across = across - (dot(across, along) / std::max(1e-300, dot(along, along))) * along;
-  std::vector<std::int32_t> list(1, start);
+  list.assign(1, start);
   stamp[start] = now;
   Vec3 sum;
   for (std::size_t i = 0; i < list.size() && list.size() < 200; ++i) {
-    sum = sum + mesh.area_vector(mesh.triangles[list[i]].v);
+    sum = sum + facets.area[list[i]];
     for (std::int32_t v : mesh.triangles[list[i]].v)
       for (std::int32_t t : mesh.star[v]) {
         if (stamp[t] == now) continue;
         stamp[t] = now;
-        const Vec3 d = centre(t) - middle;
-        if (mesh.triangles[t].patch == mesh.triangles[start].patch && dot(d, d) < reach * reach && dot(d, across) > 0)
+        const Vec3 d = facets.centre[t] - middle;
+        if (dot(d, d) < reach * reach && dot(d, across) > 0 && mesh.triangles[t].patch == mesh.triangles[start].patch)
           list.push_back(t);
       }
   }
@@ -43,6 +52,7 @@ Vec3 wide_normal(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, std::i
 std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm, int threads) {
   const double limit = std::cos(feature_deg * M_PI / 180),
                wide_limit = std::cos(0.75 * feature_deg * M_PI / 180);
+  const Facets facets(mesh, threads);
   const std::vector<std::array<std::int32_t, 2>> edges = mesh.edges();
   std::vector<char> is_sharp(edges.size(), 0);
   for_each_index(
@@ -53,19 +63,19 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
         ShortList around;
         for (std::int32_t t : mesh.star[a])
           if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b) around.push_back(t);
-        const Vec3 n = mesh.area_vector(mesh.triangles[around[0]].v), m = mesh.area_vector(mesh.triangles[around[1]].v);
+        const Vec3 &n = facets.area[around[0]], &m = facets.area[around[1]];
         is_sharp[e] = dot(n, m) <= limit * norm(n) * norm(m);
       });
   const std::size_t run = edges.size() / 16 + 1;
   parallel_for(16, threads, [&](std::size_t part) {
-    std::vector<std::int32_t> around, stamp(mesh.triangles.size(), 0);
+    std::vector<std::int32_t> around, list, stamp(mesh.triangles.size(), 0);
     std::int32_t now = 0;
     for (std::size_t e = part * run; e < std::min(edges.size(), (part + 1) * run); ++e) {
       if (!is_sharp[e]) continue;
       const auto [a, b] = edges[e];
       mesh.edge_triangles(a, b, around);
-      const Vec3 left = wide_normal(mesh, a, b, around[0], around[1], 0.375 * length_mm, stamp, ++now);
-      const Vec3 right = wide_normal(mesh, a, b, around[1], around[0], 0.375 * length_mm, stamp, ++now);
+      const Vec3 left = wide_normal(mesh, facets, a, b, around[0], around[1], 0.375 * length_mm, stamp, ++now, list);
+      const Vec3 right = wide_normal(mesh, facets, a, b, around[1], around[0], 0.375 * length_mm, stamp, ++now, list);
       is_sharp[e] = dot(left, right) <= wide_limit * norm(left) * norm(right);
     }
   });
