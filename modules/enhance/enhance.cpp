@@ -22,6 +22,8 @@ constexpr double kAim = 1.05;
 // Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.
 constexpr double kDeviationAim = 0.33;
 
+constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
+
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", x);
@@ -112,7 +114,7 @@ class Enhancement {
 
   void smooth_mesh(ComplexMesh& mesh) {
     SmoothingOptions s;
-    s.passes = o_.smooth_passes;
+    s.passes = std::min(o_.smooth_passes, kSmoothPasses);
     s.limit_xy_mm = 0.33 * o_.pixel_mm;
     s.limit_z_mm = 0.33 * o_.gap_mm;
     s.keep.clearance_mm = 0.02 * std::min(o_.pixel_mm, o_.gap_mm);
@@ -232,16 +234,38 @@ class Enhancement {
     result_.counts.refused_contact = c.refused_contact;
     result_.counts.refused_angle = c.refused_angle;
     result_.counts.refused_clearance = c.refused_clearance;
-    restore(mesh, size, r.clearance_rel);
+    MoveLimits keep;
+    keep.size_mm = &size;
+    keep.clearance_rel = r.clearance_rel;
+    keep.sheet_angle_deg = o_.sheet_angle_deg;
+    keep.corner_angle_deg = 25;
+    soften(mesh, size, keep);
+    restore(mesh, keep);
+  }
+
+  /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps: a little by
+  /// default, more for each pass that is asked for beyond the default.
+  void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
+    if (o_.smooth_passes == 0) return;
+    SmoothingOptions s;
+    s.limit_xy_mm = 0.5 * o_.pixel_mm;
+    s.limit_z_mm = 0.5 * o_.gap_mm;
+    for (double x : size) s.share.push_back(static_cast<float>(std::min(1.0, x / (4 * o_.pixel_mm))));
+    s.keep = keep;
+    s.threads = o_.threads;
+    s.passes = 1;
+    s.taubin_lambda = 0.3;
+    s.taubin_mu = -0.31;
+    smooth(mesh, s);
+    if (o_.smooth_passes <= kSmoothPasses) return;
+    s.passes = o_.smooth_passes - kSmoothPasses;
+    s.taubin_lambda = 0.5;
+    s.taubin_mu = -0.53;
+    smooth(mesh, s);
   }
 
   /// What remeshing and smoothing took from the labels' volumes comes back by small moves.
-  void restore(ComplexMesh& mesh, const std::vector<double>& size, double clearance_rel) {
-    MoveLimits keep;
-    keep.size_mm = &size;
-    keep.clearance_rel = clearance_rel;
-    keep.sheet_angle_deg = o_.sheet_angle_deg;
-    keep.corner_angle_deg = 25;
+  void restore(ComplexMesh& mesh, const MoveLimits& keep) {
     for (int pass = 0; pass < 4; ++pass) {
       double worst = 0;
       for (const auto& [label, v] : label_volumes(mesh)) worst = std::max(worst, std::abs(v / volumes_[label] - 1));

@@ -10,7 +10,7 @@
 namespace stackmesh {
 
 struct EnhanceOptions {
-  int smooth_passes = 5;  ///< HC-Laplacian; 0: no smoothing
+  int smooth_passes = 5;  ///< HC-Laplacian, up to 5; each above is one of a low-pass on the remeshed surface; 0: no smoothing
   double pixel_mm = 1;    ///< in-plane pixel of the sections
   double gap_mm = 1;      ///< between sections; with the pixel it limits how far smoothing moves a vertex
   bool remesh = true;     ///< false: smoothing only
