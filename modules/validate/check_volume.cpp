@@ -311,8 +311,8 @@ struct Face {
 
 class ConformityCheck {
  public:
-  ConformityCheck(const TetMesh& mesh, std::size_t limit, VolumeCheck& check)
-      : mesh_(mesh), limit_(limit), check_(check) {}
+  ConformityCheck(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& check)
+      : mesh_(mesh), threads_(threads), limit_(limit), check_(check) {}
 
   void run() {
     std::vector<std::int64_t> start(mesh_.points.size() + 1, 0);
@@ -320,22 +320,31 @@ class ConformityCheck {
     for (std::size_t p = 0; p < mesh_.points.size(); ++p) start[p + 1] += start[p];
     std::vector<Face> faces(start.back());
     each([&](std::int32_t low, const Face& face) { faces[start[low]++] = face; });
-    std::int64_t begin = 0;
-    for (std::size_t low = 0; low < mesh_.points.size(); ++low) {
-      const std::int64_t end = start[low];
-      std::stable_sort(faces.begin() + begin, faces.begin() + end, [](const Face& a, const Face& b) {
-        return a.middle != b.middle ? a.middle < b.middle : a.high < b.high;
-      });
-      for (std::int64_t i = begin, j; i < end; i = j) {
-        for (j = i; j < end && faces[j].middle == faces[i].middle && faces[j].high == faces[i].high; ++j) {
+    constexpr std::size_t kChunk = 1 << 12;  // points
+    struct Found {
+      std::size_t count = 0;
+      std::vector<std::array<std::int32_t, 3>> list;
+    };
+    std::vector<Found> found((mesh_.points.size() + kChunk - 1) / kChunk);
+    parallel_for(found.size(), threads_, [&](std::size_t chunk) {
+      for (std::size_t low = chunk * kChunk; low < std::min(mesh_.points.size(), (chunk + 1) * kChunk); ++low) {
+        const std::int64_t begin = low == 0 ? 0 : start[low - 1], end = start[low];
+        std::sort(faces.begin() + begin, faces.begin() + end, [](const Face& a, const Face& b) {
+          return a.middle != b.middle ? a.middle < b.middle : a.high < b.high;
+        });
+        for (std::int64_t i = begin, j; i < end; i = j) {
+          for (j = i; j < end && faces[j].middle == faces[i].middle && faces[j].high == faces[i].high; ++j) {
+          }
+          if (conforming(&faces[i], &faces[i] + (j - i))) continue;
+          ++found[chunk].count;
+          if (found[chunk].list.size() < limit_) found[chunk].list.push_back({static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
         }
-        if (conforming(&faces[i], &faces[i] + (j - i))) continue;
-        ++check_.nonconforming_faces;
-        if (check_.nonconforming_list.size() < limit_)
-          check_.nonconforming_list.push_back(
-              {static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
       }
-      begin = end;
+    });
+    for (const Found& f : found) {
+      check_.nonconforming_faces += f.count;
+      for (const auto& face : f.list)
+        if (check_.nonconforming_list.size() < limit_) check_.nonconforming_list.push_back(face);
     }
     check_.conforms = check_.nonconforming_faces == 0;
   }
@@ -380,6 +389,7 @@ class ConformityCheck {
   }
 
   const TetMesh& mesh_;
+  const int threads_;
   const std::size_t limit_;
   VolumeCheck& check_;
 };
@@ -422,7 +432,7 @@ VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options)
   check.tets = mesh.tets.size();
   check.order = mesh.mid.empty() ? 1 : 2;
   measure(mesh, options.threads, options.list_limit, check);
-  ConformityCheck(mesh, options.list_limit, check).run();
+  ConformityCheck(mesh, options.threads, options.list_limit, check).run();
   check.nonconforming_edges = count_unshared_edges(mesh);
   check.conforms = check.conforms && check.nonconforming_edges == 0;
   return check;

@@ -181,7 +181,8 @@ def main():
     compare("labels to mesh, 95 %", np.quantile(to_mesh, 0.95), row["distance_mm"]["p95"])
     if len(to_mesh) <= 60000:
         compare("labels to mesh, largest", to_mesh.max(), row["distance_mm"]["max"])
-    compare("mesh to labels, mean", back.mean(), row["reverse_distance_mm"]["mean"])
+    # 20,000 points of a shaken surface: three standard errors of their mean
+    compare("mesh to labels, mean", back.mean(), row["reverse_distance_mm"]["mean"], 0.016)
     compare("mesh to labels, 95 %", np.quantile(back, 0.95), row["reverse_distance_mm"]["p95"])
     compare("crossing pairs", crossing_pairs(points, triangles), report["surface"]["self_intersections"], 0.01, 0)
     sys.exit(1 if failed else 0)
