@@ -379,6 +379,12 @@ class MeshRun {
       if (frame_.mirrors())
         for (std::size_t t = 0; t < mesh_->tets.size(); ++t) turn_round(*mesh_, t);
       report_.volume = check_volume(*mesh_, {o_.threads});
+      const VolumeCheck& v = *report_.volume;
+      if (report_.surface_level == "enhanced" && (v.dihedral_min_deg < 1 || v.dihedral_max_deg > 179)) {
+        char text[120];
+        std::snprintf(text, sizeof text, "the flattest tetrahedra have dihedral angles of %.2f to %.2f degrees", v.dihedral_min_deg, v.dihedral_max_deg);
+        warn(std::string(text) + ": a solver may fail on them; the report's defects say where (--report R.html), another --edge-length may avoid them");
+      }
     }
     if (wants_fidelity() && input_.volume) judge_fidelity();
     fill_label_rows(report_, fidelity_.empty() ? nullptr : &fidelity_);

@@ -159,6 +159,32 @@ TEST(ImproveTets, AFlatTetThatNoSingleChangeMendsGoes) {
   EXPECT_GT(searched, 0u);
 }
 
+TEST(ImproveTets, NoSliverIsLeftWhereTheSurfaceAllowsBetter) {
+  // Shells between two shaken spheres, from thick ones to ones thinner than an edge: many tets have all corners on the surface.
+  for (const double gap : {5.0, 2.0, 1.2, 0.8})
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      SCOPED_TRACE(std::to_string(gap) + " " + std::to_string(seed));
+      InterfaceComplex shell = shapes::sphere(3, 10);
+      const InterfaceComplex inner = shapes::sphere(3, 10 - gap);
+      const int offset = static_cast<int>(shell.points.size());
+      shell.points.insert(shell.points.end(), inner.points.begin(), inner.points.end());
+      for (InterfaceTriangle t : inner.triangles) {
+        for (auto& v : t.v) v += offset;
+        shell.triangles.push_back({t.v, 0, 1});
+      }
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> shift(-0.15, 0.15);
+      for (Vec3& p : shell.points) p = p + Vec3{shift(random), shift(random), shift(random)};
+      FillOptions options;
+      options.inner_growth = 2;
+      options.improve_deg = 24;
+      const TetMesh mesh = fill(shell, options);
+      const auto [low, high] = dihedrals(mesh);
+      EXPECT_GT(low, 15);
+      EXPECT_LT(high, 155);
+    }
+}
+
 TEST(ImproveTets, NothingIsDoneWhereAllIsWell) {
   const InterfaceComplex box = shapes::voxels(1, 1, 1, {1, 1, 1}, [](int, int, int) { return 3; });
   const TetMesh mesh = fill(box);
