@@ -89,56 +89,53 @@ class Joiner {
     return axes;
   }
 
-  /// Another copy of the same place, and the pair over which it is reached.
-  struct Neighbour {
-    std::int32_t node;
-    std::size_t pair;
-    bool primary;  ///< it is on the pair's primary surface
-  };
+  /// What two parts do to each other; those without a common face, that touch in points or along edges at most, do as all others.
+  Contact between(int a, int b) const {
+    for (const SurfacePair& p : model_.sets.pairs)
+      if ((p.parts[0] == model_.sets.parts[a] && p.parts[1] == model_.sets.parts[b]) || (p.parts[0] == model_.sets.parts[b] && p.parts[1] == model_.sets.parts[a]))
+        return p.contact;
+    return o_.others;
+  }
 
   void tie() {
     SolverSets& sets = model_.sets;
-    std::map<std::int32_t, std::vector<Neighbour>> neighbours;
-    for (std::size_t i = 0; i < sets.pairs.size(); ++i) {
-      if (sets.pairs[i].contact != Contact::tie) continue;
-      std::map<std::int32_t, std::int32_t> at;  // original node to the primary surface's copy
-      for (const std::int32_t v : nodes_of_faces(model_.mesh, surface(sets.pairs[i].primary).faces)) at[sets.original[v]] = v;
-      for (const std::int32_t v : nodes_of_faces(model_.mesh, surface(sets.pairs[i].secondary).faces)) {
-        const std::int32_t other = at.at(sets.original[v]);
-        neighbours[v].push_back({other, i, true});
-        neighbours[other].push_back({v, i, false});
-      }
-    }
+    std::map<std::int32_t, std::vector<std::int32_t>> places;  // original node to its copies
+    for (std::size_t v = 0; v < sets.original.size(); ++v) places[sets.original[v]].push_back(static_cast<std::int32_t>(v));
     const std::map<std::int32_t, int> axes = supported_axes();
-    const auto held = [&](std::int32_t v) { return axes.count(v) > 0 ? axes.at(v) : 0; };
-    std::vector<std::pair<int, std::int32_t>> order;  // most supported first, then by number
-    for (const auto& [v, list] : neighbours) order.push_back({-__builtin_popcount(static_cast<unsigned>(held(v))), v});
-    std::sort(order.begin(), order.end());
-    std::set<std::int32_t> reached;
-    std::map<std::pair<std::size_t, bool>, std::map<std::int32_t, std::int32_t>> followed;  // pair, whether its primary side follows
-    for (const auto& [key, root] : order) {
-      if (!reached.insert(root).second) continue;
-      std::vector<std::int32_t> front = {root};
-      for (std::size_t i = 0; i < front.size(); ++i) {
-        const std::int32_t v = front[i];  // the vector grows
-        for (const Neighbour& n : neighbours[v]) {
-          if (!reached.insert(n.node).second) continue;
-          front.push_back(n.node);
-          if (held(v) == 7 && held(n.node) == 7) continue;  // both held all round: nothing to tie
-          followed[{n.pair, n.primary}][n.node] = v;
+    const auto held = [&](std::int32_t v) { return axes.count(v) > 0 ? __builtin_popcount(static_cast<unsigned>(axes.at(v))) : 0; };
+    const std::size_t parts = sets.parts.size();
+    std::vector<char> tied(parts * parts, 0);
+    for (std::size_t a = 0; a < parts; ++a)
+      for (std::size_t b = 0; b < parts; ++b) tied[a * parts + b] = a != b && between(static_cast<int>(a), static_cast<int>(b)) == Contact::tie;
+    std::map<std::pair<int, int>, Tie> ties;  // part that follows, part that is followed
+    for (auto& [original, copies] : places) {
+      std::stable_sort(copies.begin(), copies.end(), [&](std::int32_t a, std::int32_t b) { return held(a) > held(b); });
+      while (copies.size() > 1) {  // the first is followed by all that are tied to it, if only by way of others
+        std::vector<std::int32_t> group = {copies[0]}, rest(copies.begin() + 1, copies.end());
+        for (std::size_t i = 0; i < group.size(); ++i)
+          for (std::size_t k = 0; k < rest.size();) {
+            if (tied[sets.part_of_node[group[i]] * parts + sets.part_of_node[rest[k]]] == 0) {
+              ++k;
+              continue;
+            }
+            group.push_back(rest[k]);
+            rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
+          }
+        for (std::size_t i = 1; i < group.size(); ++i) {
+          Tie::Node node{group[i], group[0], {}};
+          for (int axis = 0; axis < 3; ++axis) node.axes[axis] = axes.count(node.node) == 0 || (axes.at(node.node) >> axis & 1) == 0;
+          if (held(node.node) < 3) ties[{sets.part_of_node[node.node], sets.part_of_node[node.followed]}].nodes.push_back(node);
         }
+        copies = std::move(rest);
       }
     }
-    for (const auto& [key, nodes] : followed) {
-      const SurfacePair& p = sets.pairs[key.first];
-      Tie tie;
-      tie.name = unique("tie_" + p.parts[key.second ? 0 : 1] + "_to_" + p.parts[key.second ? 1 : 0]);
-      tie.faces = key.second ? p.secondary : p.primary;
-      tie.nodes.assign(nodes.begin(), nodes.end());
+    for (auto& [ab, tie] : ties) {
+      std::sort(tie.nodes.begin(), tie.nodes.end(), [](const Tie::Node& a, const Tie::Node& b) { return a.node < b.node; });
+      tie.name = unique("tie_" + sets.parts[ab.first] + "_to_" + sets.parts[ab.second]);
       NodeSet set;
       set.name = tie.name;
-      set.note = "nodes that follow those at the same place on " + tie.faces;
-      for (const auto& [copy, node] : tie.nodes) set.nodes.push_back(copy);
+      set.note = "nodes of part " + sets.parts[ab.first] + " that follow those at the same place of part " + sets.parts[ab.second];
+      for (const Tie::Node& n : tie.nodes) set.nodes.push_back(n.node);
       sets.node_sets.push_back(std::move(set));
       sets.ties.push_back(std::move(tie));
     }

@@ -11,7 +11,7 @@ struct JoinOptions {
 };
 
 /// Says for each pair of parts that touch what they do to each other, and ties the nodes of those that are tied: at every place one
-/// copy is followed by all others that can be reached over tied faces, so that nothing is held twice; of several copies the one
+/// node is followed by those of all parts that are tied to it, if only by way of others, so that nothing is held twice; the one
 /// that most axes are supported of is followed, then the first.
 ///
 /// Contact without a stiffness gets 50 E / h, with E the smaller mean modulus of the two sides' elements at the contact and h the

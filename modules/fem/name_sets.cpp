@@ -246,6 +246,13 @@ class Namer {
       part_of_tet.reserve(mesh.tets.size());
       for (const Label l : mesh.labels) part_of_tet.push_back(part_of_.at(l));
       original = split_parts(mesh, part_of_tet);
+      model_.sets.parts = part_names_;
+      model_.sets.part_of_node.assign(mesh.points.size(), 0);
+      for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+        for (const std::int32_t v : mesh.tets[t]) model_.sets.part_of_node[v] = part_of_tet[t];
+        if (!mesh.mid.empty())
+          for (const std::int32_t v : mesh.mid[t]) model_.sets.part_of_node[v] = part_of_tet[t];
+      }
     }
     for (BoundaryFace& f : faces_) {
       const auto nodes = outward_nodes(mesh, f.at);

@@ -66,10 +66,16 @@ void write_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::vec
   }
 }
 
-/// What parts do to each other. The first surface of a line is the one whose nodes follow (Abaqus's and CalculiX's slave).
+/// What parts do to each other. Ties are equations of nodes that lie on each other: exact, while CalculiX's *TIE misses some nodes at the
+/// borders of its surfaces. An axis that a support holds is left out. Of a contact pair the first surface is the one whose nodes
+/// follow (Abaqus's and CalculiX's slave).
 void write_contact(OutputBuffer& out, const SolverSets& sets) {
-  for (const Tie& t : sets.ties)  // nodes, not faces: none of them is held twice where three parts meet
-    out << "*SURFACE, NAME=" << t.name << ", TYPE=NODE\n" << t.name << "\n*TIE, NAME=" << t.name << ", ADJUST=NO\n" << t.name << ", " << t.faces << '\n';
+  for (const Tie& t : sets.ties) {
+    out << "** tie: the nodes of " << t.name << "\n*EQUATION\n";
+    for (const Tie::Node& n : t.nodes)
+      for (int axis = 0; axis < 3; ++axis)
+        if (n.axes[axis]) out << "2\n" << n.node + 1 << ", " << axis + 1 << ", 1., " << n.followed + 1 << ", " << axis + 1 << ", -1.\n";
+  }
   for (const SurfacePair& p : sets.pairs) {
     if (p.contact == Contact::none) out << "** surfaces that face each other: " << p.primary << " and " << p.secondary << '\n';
     if (p.contact != Contact::contact) continue;

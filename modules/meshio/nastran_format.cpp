@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -197,32 +196,23 @@ class NastranFile {
     }
   }
 
-  /// Nodes that follow another one at the same place: a rigid element each, over the axes that are not supported.
+  /// Nodes that follow another one at the same place: a rigid element each.
   void ties() {
-    std::map<std::int32_t, std::int32_t> follows;
-    for (const Tie& t : sets_.ties)
-      for (const auto& [copy, node] : t.nodes) follows[copy] = node;
     std::int64_t number = static_cast<std::int64_t>(mesh_.tets.size());
     for (const ShellSet& s : sets_.shells) number += static_cast<std::int64_t>(s.faces.size());
-    std::map<std::int32_t, int> held;  // axes, as bits
-    for (const Support& s : sets_.supports)
-      for (const std::int32_t v : nodes_of(s).nodes)
+    for (const Tie& t : sets_.ties) {
+      out_ << "$ " << t.name << '\n';
+      for (const Tie::Node& n : t.nodes) {
+        std::string axes;
         for (int axis = 0; axis < 3; ++axis)
-          if (s.value_mm[axis]) held[v] |= 1 << axis;
-    if (!follows.empty()) out_ << "$ tied parts\n";
-    for (const auto& [copy, first] : follows) {
-      std::int32_t node = first;  // the one that follows none
-      while (follows.count(node) > 0) node = follows.at(node);
-      std::string axes;
-      for (int axis = 0; axis < 3; ++axis)
-        if (held.count(copy) == 0 || (held.at(copy) >> axis & 1) == 0) axes += static_cast<char>('1' + axis);
-      if (axes.empty()) continue;
-      out_ << "RBE2    ";
-      small(++number);
-      small(static_cast<std::int64_t>(node) + 1);
-      padded(axes, 8);
-      small(static_cast<std::int64_t>(copy) + 1);
-      out_ << '\n';
+          if (n.axes[axis]) axes += static_cast<char>('1' + axis);
+        out_ << "RBE2    ";
+        small(++number);
+        small(static_cast<std::int64_t>(n.followed) + 1);
+        padded(axes, 8);
+        small(static_cast<std::int64_t>(n.node) + 1);
+        out_ << '\n';
+      }
     }
     for (const SurfacePair& p : sets_.pairs)
       if (p.contact != Contact::tie) out_ << "$ surfaces that face each other, without contact here: " << p.primary << " and " << p.secondary << '\n';

@@ -50,11 +50,14 @@ struct SurfacePair {
   double friction = 0;          ///< coefficient of contact
 };
 
-/// Nodes that stay where others are: each the copy of a node that lies at the same place in another part.
+/// Nodes of one part that go where the nodes at the same places go in another part.
 struct Tie {
-  std::string name;   ///< of a node set, the copies
-  std::string faces;  ///< of a face set, that the nodes they follow are on
-  std::vector<std::pair<std::int32_t, std::int32_t>> nodes;  ///< a copy, and the node that it follows; ascending; no copy twice
+  struct Node {
+    std::int32_t node = 0, followed = 0;
+    std::array<bool, 3> axes{};  ///< along which it follows: those that no support of its own holds
+  };
+  std::string name;  ///< of their node set
+  std::vector<Node> nodes;  ///< ascending
 };
 
 /// Elements of one material. A label with a mapped modulus has one for each of its bins.
@@ -85,8 +88,10 @@ struct SolverSets {
   std::vector<NodeSet> node_sets;
   std::vector<FaceSet> surfaces;
   std::vector<SurfacePair> pairs;
-  std::vector<Tie> ties;                   ///< of pairs that are tied; no node follows itself by way of others
-  std::vector<std::int32_t> original;      ///< per node the one it was before parts were given their own copies; empty: no parts
+  std::vector<std::string> parts;          ///< names
+  std::vector<int> part_of_node;           ///< with parts: whose each node is
+  std::vector<std::int32_t> original;      ///< with parts: the node that each was before the parts were given their own copies
+  std::vector<Tie> ties;                   ///< no node is in two of them; a node that is followed follows none
   std::vector<ElementMaterial> materials;  ///< every tet is in exactly one, or there are none
   bool placeholder_materials = false;      ///< nobody gave any: E = 1 MPa, Poisson's ratio 0.3
   std::vector<Label> mapped;               ///< labels whose modulus varies from tet to tet
