@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the displacement that CalculiX computed.
 
 usage: draw_displacement.py RESULT.frd OUT.png [--mesh MODEL.vtu] [--scale F] [--view front|back|left|right] [--size 800x600]
