@@ -112,7 +112,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   const EnhanceArguments& e = a.enhance;
   o.virtual_sections = parse_interpolate(e.interpolate);
   o.enhance = !e.off;
-  if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 1000000;
+  if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 10000000;
   if (!e.edge_length.empty()) o.label_edges_text = parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.enhancement.edge_length_mm);
   if (e.deviation > 0) o.enhancement.deviation_mm = e.deviation;
   if (e.edge_min > 0) o.enhancement.edge_min_mm = e.edge_min;

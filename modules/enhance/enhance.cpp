@@ -15,8 +15,8 @@ namespace stackmesh {
 namespace {
 
 constexpr double kTriangleLimit = 50e6;
-constexpr double kTriangleArea = 0.39;   // of a triangle of the size asked for, over its square
-constexpr double kTetsPerTriangle = 3;   // 2.4 where walls are thin to 3 in a large organ
+// Measured: 1.9 tetrahedra a triangle in a thin skull, 3 to 4 in a heart, 9.5 in lungs with fine triangles.
+constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
 // The edges that come out scatter about 0.95 of what the remesher aims at.
 constexpr double kAim = 1.05;
 // Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.
@@ -177,29 +177,52 @@ class Enhancement {
     return s;
   }
 
-  /// Triangles that the sizes mean.
-  static double expected_triangles(const ComplexMesh& mesh, const std::vector<double>& size) {
-    double sum = 0;
+  /// Tetrahedra that the sizes mean when they are made `longer` times as long: a layer under each label's triangles, and what
+  /// a thick label holds below it.
+  double expected_tets(const ComplexMesh& mesh, const std::vector<double>& size, double longer) const {
+    const std::size_t labels = mesh.labels().size();
+    std::vector<double> area(labels, 0), triangles(labels, 0);
     for (const MeshTriangle& t : mesh.triangles) {
       if (t.patch < 0) continue;
-      const double l = (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3;
-      sum += norm(mesh.area_vector(t.v)) / (kTriangleArea * l * l);
+      const double l = longer * (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3, a = norm(mesh.area_vector(t.v));
+      for (std::int32_t side : mesh.sides(t.patch)) {
+        area[side] += a;
+        triangles[side] += a / (kTriangleArea * l * l);
+      }
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < labels; ++i) {
+      const auto v = volumes_.find(mesh.labels()[i]);
+      if (v == volumes_.end() || !(area[i] > 0)) continue;
+      const double l = std::sqrt(area[i] / (kTriangleArea * triangles[i]));
+      sum += triangles[i] * (kTetsOfLayer + kTetsOfDepth * v->second / (area[i] * l));
     }
     return sum;
   }
 
-  /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
-  void coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
-    const double most = static_cast<double>(*o_.target_tets) / kTetsPerTriangle;
-    const std::vector<double> fine = size;
-    for (int pass = 0; pass < 20 && expected_triangles(mesh, size) > most; ++pass) {
-      result_.coarsened *= std::max(1.02, std::sqrt(expected_triangles(mesh, size) / most));
-      for (std::size_t v = 0; v < size.size(); ++v)
-        size[v] = std::min(result_.coarsened * fine[v], std::max(fine[v], 0.5 * shell_[v]));
+  /// By what the sizes have to be multiplied for as many tetrahedra as the target says.
+  double towards_target(const ComplexMesh& mesh, const std::vector<double>& size) const {
+    const double target = static_cast<double>(*o_.target_tets);
+    double low = 0.01, high = 100;
+    for (int step = 0; step < 40; ++step) {
+      const double middle = std::sqrt(low * high);
+      (expected_tets(mesh, size, middle) > target ? low : high) = middle;
     }
-    if (result_.coarsened > 1)
-      warn("edges were made " + number(result_.coarsened) + " times longer than the default, for a target of " +
+    return high;
+  }
+
+  /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
+  /// @return the triangles that go with the target.
+  double coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
+    const double longer = towards_target(mesh, size);
+    const double triangles = expected_triangles(mesh, size) / (longer * longer);
+    if (longer > 1.02) {
+      result_.coarsened = longer;
+      for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], 0.5 * shell_[v]));
+      warn("edges were made " + number(longer) + " times longer than the default, for a target of " +
            std::to_string(*o_.target_tets) + " tetrahedra");
+    }
+    return triangles;
   }
 
   void refuse_giants(double triangles) const {
@@ -213,13 +236,13 @@ class Enhancement {
   void remesh_mesh(ComplexMesh& mesh) {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
-    if (o_.target_tets && !o_.edge_length_mm) coarsen(mesh, size);
+    RemeshOptions r;
+    if (o_.target_tets && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
-    result_.expected_tets = static_cast<std::size_t>(kTetsPerTriangle * triangles);
+    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size, 1));
     refuse_giants(triangles);
     const Reference reference(mesh, 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
-    RemeshOptions r;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
     // An edge length that was asked for gives way only where something would be cut off.

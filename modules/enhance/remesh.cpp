@@ -315,6 +315,11 @@ void shorten_where_off(const ComplexMesh& mesh, std::vector<double>& size, const
         shorter[v] = std::min(shorter[v], std::max(std::min(size[v], o.shortest_mm), 0.9 * factor[t] * size[v]));
   size = shorter;
   grade_sizes(mesh, o.gradation, size);
+  if (o.most_triangles > 0) {
+    const double longer = std::sqrt(expected_triangles(mesh, size) / o.most_triangles);
+    if (longer > 1)
+      for (double& x : size) x *= longer;
+  }
 }
 
 constexpr std::size_t kWhole = 3000;  // vertices: less is not cut into blocks

@@ -20,6 +20,7 @@ struct RemeshOptions {
   double deviation_rel = 0.15;  ///< of the edge length: how far a collapse or flip may leave the surface
   double deviation_mm = 0;      ///< where the reference is further from the mesh, edges get shorter; 0: nowhere
   double shortest_mm = 0;       ///< but not below this
+  double most_triangles = 0;    ///< edges that get shorter for the deviation all get longer again beyond it; 0: no limit
   double gradation = 1.3;
   int threads = 0;
 };

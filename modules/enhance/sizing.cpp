@@ -326,4 +326,14 @@ std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& opt
   return Sizing(mesh, options).run();
 }
 
+double expected_triangles(const ComplexMesh& mesh, const std::vector<double>& size) {
+  double sum = 0;
+  for (const MeshTriangle& t : mesh.triangles) {
+    if (t.patch < 0) continue;
+    const double l = (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3;
+    sum += norm(mesh.area_vector(t.v)) / (kTriangleArea * l * l);
+  }
+  return sum;
+}
+
 }  // namespace stackmesh

@@ -33,4 +33,10 @@ void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>&
 /// Edge length asked for at every vertex, mm.
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options);
 
+/// Area of a triangle as it comes out, over the square of the edge length asked for.
+constexpr double kTriangleArea = 0.39;
+
+/// How many triangles the sizes mean.
+double expected_triangles(const ComplexMesh& mesh, const std::vector<double>& size);
+
 }  // namespace stackmesh

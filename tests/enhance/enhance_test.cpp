@@ -202,8 +202,12 @@ TEST(EnhanceComplex, ATargetOfTetrahedraMakesEdgesLongerAndSaysSo) {
   o.target_tets = fine.expected_tets / 4;
   const EnhanceResult coarse = enhance(c, o);
   EXPECT_EQ(broken(c, coarse), "");
-  EXPECT_NEAR(coarse.coarsened, 2, 0.1);
-  EXPECT_LT(coarse.complex.triangles.size(), 0.33 * static_cast<double>(fine.complex.triangles.size()));
+  EXPECT_NEAR(static_cast<double>(coarse.expected_tets) / static_cast<double>(*o.target_tets), 1, 0.05);
+  // Triangles go with the square of the length, tetrahedra with up to its cube.
+  EXPECT_GT(coarse.coarsened, std::cbrt(4.0));
+  EXPECT_LT(coarse.coarsened, 2.1);
+  const double triangles = static_cast<double>(fine.complex.triangles.size()) / (coarse.coarsened * coarse.coarsened);
+  EXPECT_NEAR(static_cast<double>(coarse.complex.triangles.size()) / triangles, 1, 0.25);
   EXPECT_FALSE(coarse.warnings.empty());
 }
 
