@@ -5,6 +5,7 @@
 #include <limits>
 #include <queue>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "enhance/guard.h"
 #include "enhance/smoothing.h"
@@ -237,17 +238,7 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
 
 std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
   // A side of a triangle belongs to a label; sides of one label that meet at an edge belong to one shell.
-  std::vector<std::int32_t> parent(2 * mesh.triangles.size());
-  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<std::int32_t>(i);
-  const auto root = [&](std::int32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  const auto join = [&](std::int32_t i, std::int32_t j) {
-    i = root(i);
-    j = root(j);
-    parent[std::max(i, j)] = std::min(i, j);
-  };
+  DisjointSets sets(2 * mesh.triangles.size());
   const auto label = [&](std::int32_t i) { return mesh.labels()[mesh.sides(mesh.triangles[i / 2].patch)[i % 2]]; };
   std::vector<std::int32_t> around;
   const auto is_free = [&](std::int32_t v) { return mesh.curve[v].empty() && !mesh.pinned[v]; };
@@ -255,8 +246,8 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
     if (mesh.star[a].empty()) continue;
     if (is_free(a)) {  // one fan of one patch
       for (std::int32_t t : mesh.star[a]) {
-        join(2 * t, 2 * mesh.star[a][0]);
-        join(2 * t + 1, 2 * mesh.star[a][0] + 1);
+        sets.join(2 * t, 2 * mesh.star[a][0]);
+        sets.join(2 * t + 1, 2 * mesh.star[a][0] + 1);
       }
       continue;
     }
@@ -267,14 +258,14 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
         for (std::size_t j = 0; j < i; ++j) {
           const std::int32_t s = 2 * around[i / 2] + static_cast<std::int32_t>(i % 2),
                              t = 2 * around[j / 2] + static_cast<std::int32_t>(j % 2);
-          if (label(s) == label(t)) join(s, t);
+          if (label(s) == label(t)) sets.join(s, t);
         }
     });
   }
-  std::vector<double> volume(parent.size(), 0);
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(parent.size()); ++i) {
+  std::vector<double> volume(sets.size(), 0);
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(sets.size()); ++i) {
     if (!mesh.alive(i / 2) || label(i) == 0) continue;
-    const std::int32_t r = root(i);
+    const std::int32_t r = sets.find(i);
     const auto& v = mesh.triangles[i / 2].v;
     const Vec3& o = mesh.points[mesh.triangles[r / 2].v[0]];
     const double part = dot(mesh.points[v[0]] - o, cross(mesh.points[v[1]] - o, mesh.points[v[2]] - o)) / 6;
@@ -282,9 +273,9 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
   }
   std::vector<double> out(mesh.points.size(), std::numeric_limits<double>::infinity());
   std::size_t count = 0;
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(parent.size()); ++i) {
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(sets.size()); ++i) {
     if (!mesh.alive(i / 2) || label(i) == 0) continue;
-    const std::int32_t r = root(i);
+    const std::int32_t r = sets.find(i);
     count += r == i;
     for (std::int32_t v : mesh.triangles[i / 2].v) out[v] = std::min(out[v], std::cbrt(std::abs(volume[r])));
   }
