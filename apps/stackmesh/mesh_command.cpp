@@ -57,7 +57,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_option("--edge-min", e.edge_min, "smallest edge of --deviation, mm")->check(positive);
   command.add_option("--edge-max", e.edge_max, "largest edge of --deviation, mm")->check(positive);
   command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(number_in(1, 100, "a number from 1 to 100"))->capture_default_str();
-  command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none")->check(CLI::Range(0, 10000))->capture_default_str();
+  command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none; each above 5 takes more of the voxels' steps away")->check(CLI::Range(0, 10000))->capture_default_str();
   command.add_flag(target == Target::volume ? "--no-enhance" : "--raw,--no-enhance", e.off, "the stitched surface as it is");
   const std::vector<CLI::Option*> of_volumes = {
       command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str(),
