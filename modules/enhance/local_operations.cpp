@@ -148,7 +148,9 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   const std::array<std::int32_t, 3> one = {a, d, c}, two = {d, b, c};
   const double before = std::min(angle(mesh_.triangles[t[0]].v), angle(mesh_.triangles[t[1]].v));
   const double after = std::min(angle(one), angle(two));
-  bool better = after > before + gain_rad || (before < kNeedle && after > 2 * before);
+  // Needles along a long edge lie back to back: it is turned for a shorter one, whatever the angles, and so on.
+  const double needle = lenient ? 5 * kNeedle : kNeedle;
+  bool better = after > before + gain_rad || (before < needle && (after > 2 * before || length(c, d) < 0.9 * length(a, b)));
   if (!better && valence && after > std::max(0.45, 0.8 * before)) {
     const int was = ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) +
                     ideal_valence_error(d, 0);
@@ -160,7 +162,7 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   const Vec3 n0 = mesh_.area_vector(mesh_.triangles[t[0]].v), n1 = mesh_.area_vector(mesh_.triangles[t[1]].v);
   const Vec3 sum = unit(n0 + n1), m0 = unit(mesh_.area_vector(one)), m1 = unit(mesh_.area_vector(two));
   // The normal of a needle says nothing.
-  if ((dot(m0, sum) < kFlipBend && angle(one) > kNeedle) || (dot(m1, sum) < kFlipBend && angle(two) > kNeedle)) return false;
+  if ((dot(m0, sum) < kFlipBend && angle(one) > needle) || (dot(m1, sum) < kFlipBend && angle(two) > needle)) return false;
   // Where the four corners are far from a plane, the flip changes the surface.
   const double out =
       std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
@@ -170,7 +172,7 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   Change change;
   change.removed = &removed_;
   change.added = &added_;
-  change.clearance_mm = o_.clearance_rel * asked(a, b);
+  change.clearance_mm = before < needle ? 1e-6 * length(a, b) : o_.clearance_rel * asked(a, b);
   if (!guard.allows(change)) return false;
   mesh_.flip(a, b, t, apex);
   guard.update(removed_);
