@@ -177,36 +177,42 @@ class Enhancement {
     return s;
   }
 
-  /// Tetrahedra that the sizes mean when they are made `longer` times as long: a layer under each label's triangles, and what
-  /// a thick label holds below it.
-  double expected_tets(const ComplexMesh& mesh, const std::vector<double>& size, double longer) const {
+  /// Tetrahedra that the sizes mean: a layer under each label's triangles, and what a thick label holds below it.
+  struct ExpectedTets {
+    double layer = 0, depth = 0;
+    /// With all sizes this many times as long.
+    double at(double longer) const { return layer / (longer * longer) + depth / (longer * longer * longer); }
+  };
+  ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size) const {
     const std::size_t labels = mesh.labels().size();
     std::vector<double> area(labels, 0), triangles(labels, 0);
     for (const MeshTriangle& t : mesh.triangles) {
       if (t.patch < 0) continue;
-      const double l = longer * (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3, a = norm(mesh.area_vector(t.v));
+      const double l = (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3, a = norm(mesh.area_vector(t.v));
       for (std::int32_t side : mesh.sides(t.patch)) {
         area[side] += a;
         triangles[side] += a / (kTriangleArea * l * l);
       }
     }
-    double sum = 0;
+    ExpectedTets out;
     for (std::size_t i = 0; i < labels; ++i) {
       const auto v = volumes_.find(mesh.labels()[i]);
       if (v == volumes_.end() || !(area[i] > 0)) continue;
       const double l = std::sqrt(area[i] / (kTriangleArea * triangles[i]));
-      sum += triangles[i] * (kTetsOfLayer + kTetsOfDepth * v->second / (area[i] * l));
+      out.layer += kTetsOfLayer * triangles[i];
+      out.depth += kTetsOfDepth * triangles[i] * v->second / (area[i] * l);
     }
-    return sum;
+    return out;
   }
 
   /// By what the sizes have to be multiplied for as many tetrahedra as the target says.
   double towards_target(const ComplexMesh& mesh, const std::vector<double>& size) const {
     const double target = static_cast<double>(*o_.target_tets);
+    const ExpectedTets tets = expected_tets(mesh, size);
     double low = 0.01, high = 100;
     for (int step = 0; step < 40; ++step) {
       const double middle = std::sqrt(low * high);
-      (expected_tets(mesh, size, middle) > target ? low : high) = middle;
+      (tets.at(middle) > target ? low : high) = middle;
     }
     return high;
   }
@@ -240,7 +246,7 @@ class Enhancement {
     if (o_.target_tets && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
-    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size, 1));
+    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size).at(1));
     refuse_giants(triangles);
     const Reference reference(mesh, 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
     r.sheet_angle_deg = o_.sheet_angle_deg;

@@ -120,7 +120,7 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
     mesh.add_ridge(a, b);
     ++count;
   }
-  if (count) mesh.find_pinned();
+  if (count) mesh.find_pinned(threads);
   return count;
 }
 

@@ -137,10 +137,8 @@ class Sizing {
         ++count;
       }
     if (count == 0) return;
-    double reach = mean / static_cast<double>(count);
-    if (!o_.wall_mm.empty()) reach = std::min(reach, o_.wall_reach_mm);
-    const std::vector<double> thin = o_.wall_mm.empty() ? wall_thickness(mesh_, reach, o_.threads) : o_.wall_mm;
-    const std::vector<double> shell = o_.shell_mm.empty() ? shell_sizes(mesh_) : o_.shell_mm;
+    const double reach = std::min(mean / static_cast<double>(count), o_.wall_reach_mm);
+    const std::vector<double>&thin = o_.wall_mm, &shell = o_.shell_mm;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       const double least = std::min(o_.edge_min_mm, size_[v]);
       if (thin[v] < reach) size_[v] = std::clamp(kAcross * thin[v], least, size_[v]);

@@ -14,8 +14,8 @@ struct SizingOptions {
   double edge_min_mm = 1, edge_max_mm = 10;
   std::map<Label, double> label_max_mm;  ///< by curvature: largest length on a label, instead of edge_max_mm
   double gradation = 1.3;                ///< lengths of neighbouring edges differ by at most this factor
-  std::vector<double> shell_mm;  ///< what `shell_sizes` says; empty: it is asked
-  std::vector<double> wall_mm;   ///< what `wall_thickness` says, up to wall_reach_mm; empty: it is asked
+  std::vector<double> shell_mm;  ///< what `shell_sizes` says of the vertices
+  std::vector<double> wall_mm;   ///< what `wall_thickness` says, up to wall_reach_mm
   double wall_reach_mm = 0;
   int threads = 0;
 };

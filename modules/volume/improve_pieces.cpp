@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 
 namespace stackmesh::volume {
@@ -90,19 +91,15 @@ std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, in
       if (piece[t] == 0)
         for (const std::int32_t v : mesh.tets[t]) marked[v] = 1;
   }
-  std::vector<std::int32_t> parent(mesh.points.size()), number(mesh.points.size(), -1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(mesh.points.size());
+  std::vector<std::int32_t> number(mesh.points.size(), -1);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (piece[t] == 0)
-      for (int i = 1; i < 4; ++i) parent[root(mesh.tets[t][i])] = root(mesh.tets[t][0]);
+      for (int i = 1; i < 4; ++i) sets.join(mesh.tets[t][i], mesh.tets[t][0]);
   *count = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (piece[t] < 0) continue;
-    std::int32_t& n = number[root(mesh.tets[t][0])];
+    std::int32_t& n = number[sets.find(mesh.tets[t][0])];
     if (n < 0) n = static_cast<std::int32_t>((*count)++);
     piece[t] = n;
   }
