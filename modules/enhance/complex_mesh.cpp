@@ -419,6 +419,32 @@ std::int32_t ComplexMesh::split(std::int32_t a, std::int32_t b, const Vec3& p) {
   return n;
 }
 
+void ComplexMesh::absorb(std::int32_t a, std::int32_t b, std::int32_t t) {
+  const std::int32_t c = third(triangles[t].v, a, b);
+  std::vector<std::int32_t> around;
+  edge_triangles(a, b, around);
+  for (std::int32_t v : triangles[t].v) drop(star[v], t);
+  for (std::int32_t u : around) {
+    if (u == t) continue;
+    MeshTriangle copy = triangles[u];
+    const std::int32_t d = third(copy.v, a, b), added = static_cast<std::int32_t>(triangles.size());
+    std::replace(triangles[u].v.begin(), triangles[u].v.end(), b, c);
+    std::replace(copy.v.begin(), copy.v.end(), a, c);
+    drop(star[b], u);
+    star[b].push_back(added);
+    star[d].push_back(added);
+    star[c].push_back(u);
+    star[c].push_back(added);
+    if (is_cap(copy.patch)) flat[c] = 1;
+    triangles.push_back(copy);
+    if (!frozen.empty()) frozen.push_back(0);
+  }
+  triangles[t].patch = -1;
+  std::replace(curve[a].begin(), curve[a].end(), b, c);
+  std::replace(curve[b].begin(), curve[b].end(), a, c);
+  curve[c] = {a, b};
+}
+
 void ComplexMesh::add_ridge(std::int32_t a, std::int32_t b) {
   if (is_curve_edge(a, b)) return;
   curve[a].push_back(b);

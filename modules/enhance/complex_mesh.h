@@ -95,6 +95,10 @@ class ComplexMesh {
   /// Puts a vertex at p on the edge; returns it. Triangles that were added are the last ones.
   std::int32_t split(std::int32_t a, std::int32_t b, const Vec3& p);
 
+  /// Triangle t = (a b c) of a curve edge a b goes, its free corner c joins the curve: every other triangle of the edge is
+  /// split at c.
+  void absorb(std::int32_t a, std::int32_t b, std::int32_t t);
+
   /// Makes an edge a ridge (no-op if it is a curve edge already).
   void add_ridge(std::int32_t a, std::int32_t b);
   /// Finds pinched vertices anew.

@@ -34,12 +34,14 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   mesh_.edge_triangles(a, b, removed_);
   // A triangle whose third corner is near the middle is for a flip, and so is a needle.
   const double least = 0.05 * length(a, b);
+  bool needle = false;
   for (std::int32_t t : removed_) {
     if (mesh_.is_frozen(t)) return false;
     for (std::int32_t w : mesh_.triangles[t].v)
-      if (w != a && w != b && norm(mesh_.points[w] - p) < least) return false;
-    if (angle(mesh_.triangles[t].v) < kNeedle) return false;
+      needle = needle || (w != a && w != b && norm(mesh_.points[w] - p) < least);
+    needle = needle || angle(mesh_.triangles[t].v) < kNeedle;
   }
+  if (needle) return mesh_.is_curve_edge(a, b) && absorb(a, b);
   const auto n = static_cast<std::int32_t>(mesh_.points.size());
   added_.clear();
   for (std::int32_t t : removed_) {
@@ -142,6 +144,7 @@ int LocalOperations::ideal_valence_error(std::int32_t v, int change) const {
 
 bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence) {
   std::array<std::int32_t, 2> t, apex;
+  if (mesh_.is_curve_edge(a, b)) return absorb(a, b);
   if (!mesh_.can_flip(a, b, t, apex)) return false;
   if (mesh_.is_frozen(t[0]) || mesh_.is_frozen(t[1])) return false;
   const auto [c, d] = apex;
@@ -178,6 +181,106 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   guard.update(removed_);
   ++counts.flips;
   return true;
+}
+
+bool LocalOperations::absorb(std::int32_t a, std::int32_t b) {
+  const Vec3 from = mesh_.points[a], to = mesh_.points[b];
+  std::vector<std::int32_t> around;
+  mesh_.edge_triangles(a, b, around);
+  std::int32_t needle = -1, c = -1;
+  double height = std::min(0.05 * length(a, b), reach_rel() * asked(a, b));
+  for (std::int32_t t : around) {
+    if (mesh_.is_frozen(t)) return false;
+    for (std::int32_t w : mesh_.triangles[t].v) {
+      if (w == a || w == b || mesh_.is_held(w) || mesh_.pinned[w] || !mesh_.curve[w].empty()) continue;
+      const double h = norm(mesh_.points[w] - nearest_on_segment(mesh_.points[w], from, to));
+      if (h >= height) continue;
+      height = h;
+      needle = t;
+      c = w;
+    }
+  }
+  if (needle < 0) return false;
+  Change change;
+  change.moved = c;
+  change.to = nearest_on_segment(mesh_.points[c], from, to);
+  if (from.z == to.z) change.to.z = from.z;
+  if (!(norm(change.to - from) > 0 && norm(change.to - to) > 0)) return false;
+  if (mesh_.flat[c] && change.to.z != mesh_.points[c].z) return false;
+  removed_.assign(mesh_.star[c].begin(), mesh_.star[c].end());
+  added_.clear();
+  for (std::int32_t t : removed_)
+    if (t != needle) added_.push_back(mesh_.triangles[t].v);
+  const double before = angle(mesh_.triangles[needle].v);
+  for (const auto& v : added_) {
+    Vec3 p[3];
+    for (int k = 0; k < 3; ++k) p[k] = v[k] == c ? change.to : mesh_.points[v[k]];
+    const Vec3 n = cross(p[1] - p[0], p[2] - p[0]), m = mesh_.area_vector(v);
+    if (smallest_angle(p[0], p[1], p[2]) < before || dot(n, m) < fold() * norm(n) * norm(m)) return false;
+  }
+  for (std::int32_t t : around) {
+    if (t == needle) continue;
+    auto v = mesh_.triangles[t].v, w = v;
+    for (std::int32_t d : v)
+      if (d != a && d != b && (d == c || mesh_.has_edge(c, d))) return false;
+    std::replace(v.begin(), v.end(), b, c);
+    std::replace(w.begin(), w.end(), a, c);
+    added_.push_back(v);
+    added_.push_back(w);
+    removed_.push_back(t);
+  }
+  change.removed = &removed_;
+  change.added = &added_;
+  change.clearance_mm = 1e-6 * length(a, b);
+  if (!guard.allows(change)) return false;
+  const auto first = static_cast<std::int32_t>(mesh_.triangles.size());
+  mesh_.points[c] = change.to;
+  mesh_.absorb(a, b, needle);
+  for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t) removed_.push_back(t);
+  guard.update(removed_);
+  ++counts.flips;
+  return true;
+}
+
+bool LocalOperations::iron(std::int32_t v) {
+  if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty()) return false;
+  const Vec3 here = mesh_.points[v];
+  Vec3 mean;
+  if (!mesh_.curve[v].empty()) {
+    for (std::int32_t c : mesh_.curve[v]) mean = mean + 0.5 * mesh_.points[c];
+  } else {
+    double weight = 0;
+    for (std::int32_t t : mesh_.star[v])
+      for (std::int32_t x : mesh_.triangles[t].v)
+        if (x != v) {
+          mean = mean + mesh_.points[x];
+          weight += 1;
+        }
+    mean = (1 / weight) * mean;
+  }
+  Vec3 step = 0.7 * (mean - here);
+  if (mesh_.flat[v]) step.z = 0;
+  const double l = norm(step), most = 0.5 * size_[v];
+  if (!(l > 1e-3 * size_[v])) return false;
+  if (l > most) step = (most / l) * step;
+  removed_.assign(mesh_.star[v].begin(), mesh_.star[v].end());
+  added_.clear();
+  for (std::int32_t t : removed_) added_.push_back(mesh_.triangles[t].v);
+  Change c;
+  c.removed = &removed_;
+  c.added = &added_;
+  c.moved = v;
+  c.clearance_mm = o_.clearance_rel * size_[v];
+  for (double share : {1.0, 0.5, 0.25}) {
+    c.to = here + share * step;
+    const auto foot = reference_.nearest(c.to, mesh_.triangles[mesh_.star[v][0]].patch, reach_rel() * size_[v], -1, 0);
+    if (!foot || !mesh_.contains(c.to) || !guard.allows(c)) continue;
+    mesh_.points[v] = c.to;
+    guard.update(removed_);
+    ++counts.relocations;
+    return true;
+  }
+  return false;
 }
 
 Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {

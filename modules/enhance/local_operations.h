@@ -32,6 +32,10 @@ class LocalOperations {
   /// Flips where it makes the smallest angle larger by `gain_rad`; with `valence`, also where neighbour
   /// counts gain.
   bool flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence);
+  /// Where a curve edge is the long side of a needle, which no flip may turn: the needle goes, its apex joins the curve.
+  bool absorb(std::int32_t a, std::int32_t b);
+  /// Moves one vertex towards the middle of its neighbours, whatever the angles: it takes folds out.
+  bool iron(std::int32_t v);
   /// Moves one vertex to the place near it that makes the smallest angle round it largest.
   bool relocate(std::int32_t v);
   /// Where a vertex belongs when it is drawn to p: on its reference sheet or curve, on its cap; itself if it

@@ -55,8 +55,11 @@ class Remesher {
   void mend(int sweeps) {
     regrid();
     ops_.lenient = true;
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-      if (improve_worst(o_.mend_angle_deg) == 0) break;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      const std::size_t better = improve_worst(o_.mend_angle_deg);
+      if (better == 0 || sweep % 2 == 1)
+        if (iron_bad() + better == 0) break;
+    }
     ops_.lenient = false;
   }
 
@@ -256,6 +259,24 @@ class Remesher {
       const double a = ops_.angle(mesh_.triangles[t].v);
       if (a < limit) done += improve(t, a);
     }
+    return done;
+  }
+
+  /// Moves the vertices of bad triangles, and those next to them, to where the surface is even.
+  std::size_t iron_bad() {
+    std::vector<std::int32_t> all, around;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
+      if (mesh_.alive(t) && ops_.angle(mesh_.triangles[t].v) < 0.5 * o_.mend_angle_deg * kDegree)
+        for (std::int32_t v : mesh_.triangles[t].v) {
+          all.push_back(v);
+          mesh_.neighbours(v, around);
+          all.insert(all.end(), around.begin(), around.end());
+        }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    std::size_t done = 0;
+    for (int pass = 0; pass < 2; ++pass)
+      for (std::int32_t v : all) done += ops_.iron(v);
     return done;
   }
 
