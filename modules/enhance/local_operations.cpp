@@ -274,7 +274,14 @@ bool LocalOperations::iron(std::int32_t v) {
   for (double share : {1.0, 0.5, 0.25}) {
     c.to = here + share * step;
     const auto foot = reference_.nearest(c.to, mesh_.triangles[mesh_.star[v][0]].patch, reach_rel() * size_[v], -1, 0);
-    if (!foot || !mesh_.contains(c.to) || !guard.allows(c)) continue;
+    if (!foot || !mesh_.contains(c.to)) continue;
+    bool crowded = false;  // a thin neck is not to be drawn together
+    for (const auto& t : added_)
+      for (std::int32_t x : t) {
+        const double apart = norm(c.to - mesh_.points[x]);
+        crowded = crowded || (x != v && apart < 0.3 * size_[v] && apart < length(v, x));
+      }
+    if (crowded || !guard.allows(c)) continue;
     mesh_.points[v] = c.to;
     guard.update(removed_);
     ++counts.relocations;
