@@ -445,6 +445,44 @@ void ComplexMesh::absorb(std::int32_t a, std::int32_t b, std::int32_t t) {
   curve[c] = {a, b};
 }
 
+std::vector<std::int32_t> ComplexMesh::disc_behind(const std::array<std::int32_t, 3>& loop, std::int32_t start,
+                                                   std::size_t most) const {
+  std::vector<std::int32_t> disc = {start}, inside, around;
+  int at_loop = 0;
+  for (std::size_t i = 0; i < disc.size(); ++i) {
+    const auto& v = triangles[disc[i]].v;
+    if (is_frozen(disc[i]) || triangles[disc[i]].patch != triangles[start].patch || disc.size() > most) return {};
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = v[k], b = v[(k + 1) % 3];
+      const bool corner = holds(loop, a);
+      if (corner && holds(loop, b)) {
+        ++at_loop;
+        continue;
+      }
+      if (!corner) {
+        if (pinned[a] || is_held(a) || !curve[a].empty()) return {};
+        inside.push_back(a);
+      }
+      edge_triangles(a, b, around);
+      if (around.size() != 2) return {};
+      const std::int32_t next = around[around[0] == disc[i]];
+      if (std::find(disc.begin(), disc.end(), next) == disc.end()) disc.push_back(next);
+    }
+  }
+  std::sort(inside.begin(), inside.end());
+  inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
+  if (at_loop != 3 || inside.empty() || disc.size() != 2 * inside.size() + 1) return {};
+  return disc;
+}
+
+void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc, const std::array<std::int32_t, 3>& v) {
+  for (std::int32_t t : disc)
+    for (std::int32_t x : triangles[t].v) drop(star[x], t);
+  for (std::size_t i = 1; i < disc.size(); ++i) triangles[disc[i]].patch = -1;
+  triangles[disc[0]].v = v;
+  for (std::int32_t x : v) star[x].push_back(disc[0]);
+}
+
 void ComplexMesh::add_ridge(std::int32_t a, std::int32_t b) {
   if (is_curve_edge(a, b)) return;
   curve[a].push_back(b);

@@ -99,6 +99,12 @@ class ComplexMesh {
   /// split at c.
   void absorb(std::int32_t a, std::int32_t b, std::int32_t t);
 
+  /// The triangles of one patch on the side of `start` of the loop of edges a b c: a disc with free vertices only within. Empty
+  /// where they are not one, or more than `most`.
+  std::vector<std::int32_t> disc_behind(const std::array<std::int32_t, 3>& loop, std::int32_t start, std::size_t most) const;
+  /// Puts the triangle v in the place of such a disc; it gets the number of the disc's first.
+  void replace_disc(const std::vector<std::int32_t>& disc, const std::array<std::int32_t, 3>& v);
+
   /// Makes an edge a ridge (no-op if it is a curve edge already).
   void add_ridge(std::int32_t a, std::int32_t b);
   /// Finds pinched vertices anew.

@@ -242,6 +242,44 @@ bool LocalOperations::absorb(std::int32_t a, std::int32_t b) {
   return true;
 }
 
+bool LocalOperations::cut_tip(std::int32_t a, std::int32_t b) {
+  constexpr std::size_t kMost = 80;  // triangles of a tip
+  std::vector<std::int32_t> edge, of_a, of_b;
+  mesh_.edge_triangles(a, b, edge);
+  if (edge.size() != 2) return false;
+  mesh_.neighbours(a, of_a);
+  mesh_.neighbours(b, of_b);
+  for (std::int32_t c : of_a) {
+    if (!std::binary_search(of_b.begin(), of_b.end(), c)) continue;
+    for (std::int32_t start : edge) {
+      removed_ = mesh_.disc_behind({a, b, c}, start, kMost);
+      if (removed_.empty()) continue;
+      const Vec3 &p = mesh_.points[a], &q = mesh_.points[b], &r = mesh_.points[c];
+      double far = 0;
+      for (std::int32_t t : removed_)
+        for (std::int32_t v : mesh_.triangles[t].v)
+          far = std::max(far, norm(mesh_.points[v] - nearest_on_triangle(mesh_.points[v], p, q, r)));
+      if (far > asked(a, b)) continue;
+      const auto& v = mesh_.triangles[start].v;
+      const bool forward = (v[0] == a && v[1] == b) || (v[1] == a && v[2] == b) || (v[2] == a && v[0] == b);
+      added_ = {forward ? std::array<std::int32_t, 3>{a, b, c} : std::array<std::int32_t, 3>{b, a, c}};
+      double worst = 10;
+      for (std::int32_t t : removed_) worst = std::min(worst, angle(mesh_.triangles[t].v));
+      if (angle(added_[0]) < worst) continue;
+      Change change;
+      change.removed = &removed_;
+      change.added = &added_;
+      change.clearance_mm = o_.clearance_rel * asked(a, b);
+      if (!guard.allows(change)) continue;
+      mesh_.replace_disc(removed_, added_[0]);
+      guard.update(removed_);
+      ++counts.collapses;
+      return true;
+    }
+  }
+  return false;
+}
+
 bool LocalOperations::iron(std::int32_t v) {
   if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty()) return false;
   const Vec3 here = mesh_.points[v];

@@ -34,6 +34,9 @@ class LocalOperations {
   bool flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence);
   /// Where a curve edge is the long side of a needle, which no flip may turn: the needle goes, its apex joins the curve.
   bool absorb(std::int32_t a, std::int32_t b);
+  /// A tip that hangs on a loop of three edges, through a and b, becomes one triangle; no part of it may be further from that
+  /// than an edge length.
+  bool cut_tip(std::int32_t a, std::int32_t b);
   /// Moves one vertex towards the middle of its neighbours, whatever the angles: it takes folds out.
   bool iron(std::int32_t v);
   /// Moves one vertex to the place near it that makes the smallest angle round it largest.

@@ -292,6 +292,7 @@ class Remesher {
       const int k = by_length[i];
       const std::int32_t a = v[k], b = v[(k + 1) % 3];
       if (side(k) < 0.8 * ops_.asked(a, b) && (ops_.collapse(a, b, floor) || ops_.collapse(b, a, floor))) return true;
+      if (ops_.lenient && ops_.cut_tip(a, b)) return true;
     }
     bool moved = false;
     for (std::int32_t w : v) moved = ops_.relocate(w) || moved;
