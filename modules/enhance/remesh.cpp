@@ -24,10 +24,15 @@ class Remesher {
 
   void round(int number) {
     regrid();
-    split_long();
+    split_long(kSqrt2);
     collapse_short(std::vector<double>(number == 0 ? 8 : 3, 1 / kSqrt2), (number == 0 ? 8 : 15) * kDegree);
     flip_all(2 * kDegree, number + 1 < o_.rounds, 2);
     for (int pass = 0; pass < (number + 2 < o_.rounds ? 1 : 2); ++pass) move(relocated());
+  }
+
+  void split_all() {
+    regrid();
+    split_long(2);
   }
 
   void coarsen() {
@@ -98,9 +103,9 @@ class Remesher {
     return out;
   }
 
-  void split_long() {
+  void split_long(double above) {
     for (int pass = 0; pass < 12; ++pass) {
-      auto list = ranked([](double r) { return r > kSqrt2; });
+      auto list = ranked([above](double r) { return r > above; });
       std::size_t done = 0;
       for (auto it = list.rbegin(); it != list.rend(); ++it)
         if (mesh_.has_edge(it->second[0], it->second[1])) done += ops_.split(it->second[0], it->second[1]);
@@ -344,6 +349,17 @@ void shorten_where_off(const ComplexMesh& mesh, std::vector<double>& size, const
   }
 }
 
+/// Edges that should have been split, and were not: their triangles fit into no block.
+bool has_long_edges(const ComplexMesh& mesh, const std::vector<double>& size) {
+  for (const MeshTriangle& t : mesh.triangles)
+    if (t.patch >= 0)
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t a = t.v[k], b = t.v[(k + 1) % 3];
+        if (norm(mesh.points[a] - mesh.points[b]) > size[a] + size[b]) return true;
+      }
+  return false;
+}
+
 constexpr std::size_t kWhole = 3000;  // vertices: less is not cut into blocks
 constexpr std::size_t kBlock = 8000;  // vertices of a block, at most
 
@@ -396,6 +412,7 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
   for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });
   for (int round = 0; round < options.rounds; ++round) {
     in_blocks(false, [&](Remesher& r) { r.round(round); });
+    if (round == 0 && has_long_edges(mesh, size)) in_blocks(true, [](Remesher& r) { r.split_all(); });
     if (options.deviation_mm > 0 && round < 2) shorten_where_off(mesh, size, reference, options);
     progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
   }
