@@ -83,8 +83,7 @@ void TriangleGrid::remove(std::int32_t t) {
   boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}, {}};  // covers no cell
 }
 
-Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg)
-    : mesh_(mesh), cosine_limit_(std::cos(sheet_angle_deg * M_PI / 180)) {}
+Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg) : mesh_(mesh) { set_sheet_angle(sheet_angle_deg); }
 
 void Guard::rebuild(double cell_mm) {
   grid_.build(mesh_, mesh_.points, cell_mm);

@@ -89,6 +89,7 @@ class Guard {
  public:
   Guard(ComplexMesh& mesh, double sheet_angle_deg);
   void rebuild(double cell_mm);
+  void set_sheet_angle(double deg) { cosine_limit_ = std::cos(deg * M_PI / 180); }
 
   /// True when after the change no two triangles meet beyond what they share; no angle between sheets at an
   /// edge is below the limit unless the triangles that go had a narrower one; and no triangle comes closer to

@@ -128,7 +128,7 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
   Change c;
   c.removed = &removed_;
   c.added = &added_;
-  c.clearance_mm = o_.clearance_rel * asked_length;
+  c.clearance_mm = clearance_rel() * asked_length;
   if (!guard.allows(c)) return false;
   mesh_.collapse(gone, kept);
   guard.update(removed_);
@@ -175,7 +175,7 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   Change change;
   change.removed = &removed_;
   change.added = &added_;
-  change.clearance_mm = before < needle ? 1e-6 * length(a, b) : o_.clearance_rel * asked(a, b);
+  change.clearance_mm = before < needle ? 1e-6 * length(a, b) : clearance_rel() * asked(a, b);
   if (!guard.allows(change)) return false;
   mesh_.flip(a, b, t, apex);
   guard.update(removed_);
@@ -269,7 +269,7 @@ bool LocalOperations::cut_tip(std::int32_t a, std::int32_t b) {
       Change change;
       change.removed = &removed_;
       change.added = &added_;
-      change.clearance_mm = o_.clearance_rel * asked(a, b);
+      change.clearance_mm = clearance_rel() * asked(a, b);
       if (!guard.allows(change)) continue;
       mesh_.replace_disc(removed_, added_[0]);
       guard.update(removed_);
@@ -308,7 +308,7 @@ bool LocalOperations::iron(std::int32_t v) {
   c.removed = &removed_;
   c.added = &added_;
   c.moved = v;
-  c.clearance_mm = o_.clearance_rel * size_[v];
+  c.clearance_mm = clearance_rel() * size_[v];
   for (double share : {1.0, 0.5, 0.25}) {
     c.to = here + share * step;
     const auto foot = reference_.nearest(c.to, mesh_.triangles[mesh_.star[v][0]].patch, reach_rel() * size_[v], -1, 0);
@@ -433,7 +433,7 @@ bool LocalOperations::relocate(std::int32_t v) {
   c.removed = &removed_;
   c.added = &added_;
   c.moved = v;
-  c.clearance_mm = o_.clearance_rel * size_[v];
+  c.clearance_mm = clearance_rel() * size_[v];
   for (const auto& [a, q] : places) {
     c.to = q;
     if (!mesh_.contains(q) || !guard.allows(c)) continue;

@@ -50,15 +50,22 @@ class LocalOperations {
   /// For the last bad triangles: operations may leave the surface further, fold it more, and merge junctions a short edge
   /// apart.
   bool lenient = false;
+  /// For what is left then: sheets may come closer still.
+  void set_desperate(bool on) {
+    guard.set_sheet_angle(on ? 0.3 * o_.sheet_angle_deg : o_.sheet_angle_deg);
+    closer_ = on ? 0.3 : 1;
+  }
   std::vector<std::int32_t>& hints;
 
  private:
+  double clearance_rel() const { return closer_ * o_.clearance_rel; }
   double reach_rel() const { return (lenient ? 2.5 : 1) * o_.deviation_rel; }
   double fold() const { return lenient ? 0.1 : 0.35; }  ///< cosine: a triangle's normal against that of its old fan
   double smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const;
   void fan_normals(std::int32_t v);
   int ideal_valence_error(std::int32_t v, int change) const;
 
+  double closer_ = 1;
   ComplexMesh& mesh_;
   std::vector<double>& size_;
   const Reference& reference_;

@@ -60,10 +60,13 @@ class Remesher {
   void mend(int sweeps) {
     regrid();
     ops_.lenient = true;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-      const std::size_t better = improve_worst(o_.mend_angle_deg);
-      if (better == 0 || sweep % 2 == 1)
-        if (iron_bad() + better == 0) break;
+    for (const bool desperate : {false, true, false}) {
+      ops_.set_desperate(desperate);
+      for (int sweep = 0; sweep < sweeps; ++sweep) {
+        const std::size_t better = improve_worst(desperate ? 0.5 * o_.mend_angle_deg : o_.mend_angle_deg);
+        if (better == 0 || sweep % 2 == 1)
+          if (iron_bad() + better == 0) break;
+      }
     }
     ops_.lenient = false;
   }
