@@ -137,7 +137,7 @@ bool edge_meet(const Corners3& s, const Corners3& t, const SharedCorners& h) {
   return turn(p, q, look(c, axis)) * turn(p, q, look(d, axis)) >= 0;
 }
 
-double squared_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+NearestPoints nearest_on_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Vec3 d1 = q - p, d2 = s - r, w = p - r;
   const double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, w), c = dot(d1, w), b = dot(d1, d2);
   const double den = a * e - b * b;
@@ -150,8 +150,8 @@ double squared_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3&
     v = 1;
     u = a > 0 ? std::clamp((b - c) / a, 0.0, 1.0) : 0;
   }
-  const Vec3 g = (p + u * d1) - (r + v * d2);
-  return dot(g, g);
+  const Vec3 x = p + u * d1, y = r + v * d2;
+  return {x, y, dot(x - y, x - y)};
 }
 
 }  // namespace
@@ -219,14 +219,16 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
-double squared_distance(const Corners3& s, const Corners3& t) {
-  double best = 1e300;
+NearestPoints nearest_points(const Corners3& s, const Corners3& t) {
+  NearestPoints best;
+  const auto offer = [&](const NearestPoints& n) {
+    if (n.squared < best.squared) best = n;
+  };
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j)
-      best = std::min(best, squared_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
-    const Vec3 g = s[i] - nearest_on_triangle(s[i], t[0], t[1], t[2]),
-               h = t[i] - nearest_on_triangle(t[i], s[0], s[1], s[2]);
-    best = std::min({best, dot(g, g), dot(h, h)});
+    for (int j = 0; j < 3; ++j) offer(nearest_on_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+    const Vec3 q = nearest_on_triangle(s[i], t[0], t[1], t[2]), p = nearest_on_triangle(t[i], s[0], s[1], s[2]);
+    offer({s[i], q, dot(s[i] - q, s[i] - q)});
+    offer({p, t[i], dot(p - t[i], p - t[i])});
   }
   return best;
 }

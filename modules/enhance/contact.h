@@ -23,8 +23,13 @@ bool certainly_apart(const Corners3& s, const Corners3& t, double gap);
 /// True when the triangles (of non-zero area) meet beyond the corners that they share by index. Exact.
 bool triangles_meet(const Corners3& s, const Corners3& t, const SharedCorners& shared);
 
-/// Distance of two triangles that do not meet, squared.
-double squared_distance(const Corners3& s, const Corners3& t);
+/// The nearest points of two triangles that do not meet, and their distance, squared.
+struct NearestPoints {
+  Vec3 on_s, on_t;
+  double squared = 1e300;
+};
+NearestPoints nearest_points(const Corners3& s, const Corners3& t);
+inline double squared_distance(const Corners3& s, const Corners3& t) { return nearest_points(s, t).squared; }
 
 /// Cosine of the angle between the half planes of two triangles at their common edge; 1: folded onto each
 /// other.

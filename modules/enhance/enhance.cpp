@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
+#include "enhance/separate.h"
 #include "enhance/sizing.h"
 #include "enhance/smoothing.h"
 
@@ -22,6 +23,7 @@ constexpr double kAim = 1.05;
 // Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.
 constexpr double kDeviationAim = 0.33;
 
+constexpr double kSheetGap = 0.2;  // of the edge length: what sheets keep apart in the end, where small moves allow it
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
 std::string number(double x) {
@@ -269,6 +271,7 @@ class Enhancement {
     keep.sheet_angle_deg = o_.sheet_angle_deg;
     keep.corner_angle_deg = 25;
     soften(mesh, size, keep);
+    separate_sheets(mesh, size, kSheetGap, keep, o_.threads);
     restore(mesh, keep);
   }
 
