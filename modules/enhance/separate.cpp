@@ -33,6 +33,11 @@ class Separation {
     const Corners3 s = corners(p.i), t = corners(p.j);
     const SharedCorners h = shared_corners(mesh_.triangles[p.i].v, mesh_.triangles[p.j].v);
     if (h.count == 2) return sheet_cosine(s, t, h) > std::cos(angle_);
+    if (h.count == 1) {
+      bool near = false;
+      each_off_corner(s, t, h, gap(p), [&](const NearestPoints&, double) { near = true; });
+      return near;
+    }
     if (h.count != 0 || certainly_apart(s, t, gap(p))) return false;
     const NearestPoints n = nearest_points(s, t);
     return n.squared < gap(p) * gap(p) && n.squared > 0 && leads_off(s, t, n.on_s - n.on_t);
@@ -46,12 +51,17 @@ class Separation {
       open_edge(p.i, s, h.in_s, t, p.j, h.in_t);
       return;
     }
-    const NearestPoints n = nearest_points(s, t);
-    const double d = std::sqrt(n.squared);
-    if (!(d > 0) || d >= gap(p)) return;
-    const Vec3 move = (0.5 * (gap(p) - d) / d) * (n.on_s - n.on_t);
-    push(p.i, s, n.on_s, move);
-    push(p.j, t, n.on_t, -1.0 * move);
+    const auto apart = [&](const NearestPoints& n, double gap_mm) {
+      const double d = std::sqrt(n.squared);
+      if (!(d > 0) || d >= gap_mm) return;
+      const Vec3 move = (0.5 * (gap_mm - d) / d) * (n.on_s - n.on_t);
+      push(p.i, s, n.on_s, move);
+      push(p.j, t, n.on_t, -1.0 * move);
+    };
+    if (h.count == 1)
+      each_off_corner(s, t, h, gap(p), apart);
+    else
+      apart(nearest_points(s, t), gap(p));
   }
 
   std::vector<Vec3> places() const {
@@ -68,6 +78,23 @@ class Separation {
   }
 
  private:
+  /// Of triangles with a common corner: calls visit(points, gap) for each other corner that is nearer to the other triangle than
+  /// the gap and the angle, seen from the common corner, allow.
+  template <class Visit>
+  void each_off_corner(const Corners3& s, const Corners3& t, const SharedCorners& h, double gap_mm, Visit visit) const {
+    const Vec3& common = s[h.in_s[0]];
+    const auto offer = [&](const Vec3& corner, NearestPoints n) {
+      n.squared = dot(n.on_s - n.on_t, n.on_s - n.on_t);
+      const double wanted = std::min(gap_mm, angle_ * norm(corner - common));
+      if (n.squared < wanted * wanted && n.squared > 0 && leads_off(s, t, n.on_s - n.on_t)) visit(n, wanted);
+    };
+    for (int k = 1; k < 3; ++k) {
+      const Vec3 &p = s[(h.in_s[0] + k) % 3], &q = t[(h.in_t[0] + k) % 3];
+      offer(p, {p, nearest_on_triangle(p, t[0], t[1], t[2]), 0});
+      offer(q, {nearest_on_triangle(q, s[0], s[1], s[2]), q, 0});
+    }
+  }
+
   static bool leads_off(const Corners3& s, const Corners3& t, const Vec3& way) {
     const Vec3 n = cross(s[1] - s[0], s[2] - s[0]), m = cross(t[1] - t[0], t[2] - t[0]);
     const double l = kAcross * norm(way);
