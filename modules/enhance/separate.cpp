@@ -9,6 +9,7 @@ namespace stackmesh {
 namespace {
 
 constexpr int kPasses = 4;
+constexpr double kCornerAngle = 12;  // degrees: a triangle may become that narrow for it
 constexpr double kAcross = 0.7;  // cosine: the way apart leads off at least one of the two sheets
 
 /// Two triangles that are too near.
@@ -151,8 +152,11 @@ class Separation {
 SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& size, double gap_rel, const MoveLimits& keep,
                                 int threads) {
   MoveLimits wanted = keep;
+  wanted.corner_angle_deg = std::min(keep.corner_angle_deg, kCornerAngle);
   wanted.size_mm = &size;
   wanted.clearance_rel = gap_rel;
+  MoveLimits limits = wanted;
+  limits.clearance_rel = keep.clearance_rel;
   const std::vector<float> gaps = clearances(mesh, wanted);
   const std::vector<Vec3> origin = mesh.points;
   double sum = 0;
@@ -178,7 +182,7 @@ SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& si
   for (int pass = 0; pass < kPasses && !pairs.empty(); ++pass) {
     Separation apart(mesh, gaps, origin, keep.sheet_angle_deg);
     for (const NearPair& p : pairs) apart.part(p);
-    const SmoothingResult r = move_guarded(mesh, apart.places(), keep, threads);
+    const SmoothingResult r = move_guarded(mesh, apart.places(), limits, threads);
     result.moved = std::max(result.moved, r.moved);
     result.held_back = r.held_back;
     result.rounds += r.rounds;
