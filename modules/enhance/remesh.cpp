@@ -13,6 +13,7 @@ namespace stackmesh {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
+const double kFolded = std::cos(155 * kDegree);  // two triangles whose normals are further apart
 const double kSqrt2 = std::sqrt(2.0);
 
 /// Works on a mesh, or on a block of one.
@@ -274,7 +275,7 @@ class Remesher {
   std::size_t iron_bad() {
     std::vector<std::int32_t> all, around;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
-      if (mesh_.alive(t) && ops_.angle(mesh_.triangles[t].v) < 0.5 * o_.mend_angle_deg * kDegree)
+      if (mesh_.alive(t) && (ops_.angle(mesh_.triangles[t].v) < 0.5 * o_.mend_angle_deg * kDegree || is_folded(t)))
         for (std::int32_t v : mesh_.triangles[t].v) {
           all.push_back(v);
           mesh_.neighbours(v, around);
@@ -286,6 +287,23 @@ class Remesher {
     for (int pass = 0; pass < 2; ++pass)
       for (std::int32_t v : all) done += ops_.iron(v);
     return done;
+  }
+
+  /// True where the surface turns back onto itself over an edge of the triangle within its patch.
+  bool is_folded(std::int32_t t) const {
+    const auto& v = mesh_.triangles[t].v;
+    const Vec3 n = mesh_.area_vector(v);
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = v[k], b = v[(k + 1) % 3];
+      for (std::int32_t u : mesh_.star[a]) {
+        if (u <= t || mesh_.triangles[u].patch != mesh_.triangles[t].patch) continue;
+        const auto& w = mesh_.triangles[u].v;
+        if (w[0] != b && w[1] != b && w[2] != b) continue;
+        const Vec3 m = mesh_.area_vector(w);
+        if (dot(n, m) < kFolded * norm(n) * norm(m)) return true;
+      }
+    }
+    return false;
   }
 
   bool improve(std::int32_t t, double angle) {
