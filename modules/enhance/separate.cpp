@@ -9,7 +9,7 @@ namespace stackmesh {
 namespace {
 
 constexpr int kPasses = 4;
-constexpr double kCornerAngle = 12;  // degrees: a triangle may become that narrow for it
+constexpr double kCornerAngle = 18;  // degrees: a triangle may become that narrow for it
 constexpr double kAcross = 0.7;  // cosine: the way apart leads off at least one of the two sheets
 
 /// Two triangles that are too near.
