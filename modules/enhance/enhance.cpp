@@ -11,6 +11,7 @@
 #include "enhance/separate.h"
 #include "enhance/sizing.h"
 #include "enhance/smoothing.h"
+#include "enhance/surface_distance.h"
 
 namespace stackmesh {
 namespace {
@@ -23,6 +24,8 @@ constexpr double kAim = 1.05;
 // Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.
 constexpr double kDeviationAim = 0.33;
 
+constexpr std::size_t kSamples = 20000;    // of the stitched surface, to tell its distance
+constexpr double kSmoothingCost = 0.031;  // pixels of mean distance for which the steps of single voxels go
 constexpr double kSheetGap = 0.2;  // of the edge length: what sheets keep apart in the end, where small moves allow it
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
@@ -51,6 +54,7 @@ class Enhancement {
       if (wanted != o_.label_volume_mm3.end()) v = wanted->second;
     }
     shell_ = shell_sizes(mesh, &shells_);
+    samples_ = sample_surface(mesh, kSamples);
     result_.complex = stitched_;
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm), o_.threads);
     wall_reach_ = std::max(2 * o_.pixel_mm, o_.edge_length_mm.value_or(6 * o_.pixel_mm));
@@ -275,8 +279,9 @@ class Enhancement {
     restore(mesh, keep);
   }
 
-  /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps: a little by
-  /// default, more for each pass that is asked for beyond the default.
+  /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps. By default it
+  /// may cost little distance: single steps go for that; of larger ones (of images with finer voxels than they were taken
+  /// with) only a light pass takes some. Each pass that is asked for beyond the default is done.
   void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     if (o_.smooth_passes == 0) return;
     SmoothingOptions s;
@@ -285,14 +290,14 @@ class Enhancement {
     for (double x : size) s.share.push_back(static_cast<float>(std::min(1.0, x / (4 * o_.pixel_mm))));
     s.keep = keep;
     s.threads = o_.threads;
-    s.passes = 1;
-    s.taubin_lambda = 0.3;
-    s.taubin_mu = -0.31;
-    smooth(mesh, s);
-    if (o_.smooth_passes <= kSmoothPasses) return;
-    s.passes = o_.smooth_passes - kSmoothPasses;
     s.taubin_lambda = 0.5;
     s.taubin_mu = -0.53;
+    s.passes = o_.smooth_passes > kSmoothPasses ? o_.smooth_passes - kSmoothPasses : 3;
+    if (o_.smooth_passes <= kSmoothPasses && smoothing_cost(mesh, samples_, s) > kSmoothingCost * o_.pixel_mm) {
+      s.passes = 1;
+      s.taubin_lambda = 0.3;
+      s.taubin_mu = -0.31;
+    }
     smooth(mesh, s);
   }
 
@@ -323,6 +328,7 @@ class Enhancement {
   std::vector<double> wall_;         // and how thick its walls are there, up to the reach
   double wall_reach_ = 0;
   std::size_t shells_ = 0;
+  SurfaceSamples samples_;  // of the stitched surface
 };
 
 }  // namespace

@@ -43,47 +43,6 @@ struct Neighbours {
   bool moves(std::size_t v) const { return first[v] != first[v + 1]; }
 };
 
-/// Smoothed places without any guard, within the limits.
-std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOptions& o) {
-  const std::size_t n = mesh.points.size();
-  const Neighbours around(mesh, o.threads);
-  std::vector<Vec3> p = mesh.points, q = p, b(n);
-  const std::vector<Vec3>& origin = mesh.points;
-  const auto limited = [&](std::size_t v, Vec3 to) {
-    Vec3 d = to - origin[v];
-    if (mesh.flat[v]) d.z = 0;
-    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) +
-                               d.z * d.z / (o.limit_z_mm * o.limit_z_mm)) /
-                     (o.share.empty() ? 1.0 : std::max(1e-6f, o.share[v]));
-    return s > 1 ? origin[v] + (1 / s) * d : origin[v] + d;
-  };
-  const bool taubin = o.taubin_lambda != 0;
-  for (int pass = 0; pass < o.passes; ++pass) {
-    if (taubin) {
-      for (double factor : {o.taubin_lambda, o.taubin_mu}) {
-        for_each_index(n, o.threads, [&](std::size_t v) {
-          if (around.moves(v)) q[v] = p[v] + factor * (around.mean(p, v) - p[v]);
-        });
-        std::swap(p, q);
-      }
-      for_each_index(n, o.threads, [&](std::size_t v) {
-        if (around.moves(v)) p[v] = limited(v, p[v]);
-      });
-      continue;
-    }
-    for_each_index(n, o.threads, [&](std::size_t v) {
-      if (!around.moves(v)) return;
-      q[v] = around.mean(p, v);
-      b[v] = q[v] - (o.alpha * origin[v] + (1 - o.alpha) * p[v]);
-    });
-    for_each_index(n, o.threads, [&](std::size_t v) {
-      if (around.moves(v)) p[v] = limited(v, q[v] - (o.beta * b[v] + (1 - o.beta) * around.mean(b, v)));
-    });
-    q = p;
-  }
-  return p;
-}
-
 /// Places of the vertices at which every label has the volume asked for, to first order: label l grows by offset[l] along
 /// its normals; between a and b the sheet moves by the difference.
 std::vector<Vec3> places_of_volumes(const ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
@@ -139,6 +98,46 @@ double mean_edge(const ComplexMesh& mesh) {
 }
 
 }  // namespace
+
+std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOptions& o) {
+  const std::size_t n = mesh.points.size();
+  const Neighbours around(mesh, o.threads);
+  std::vector<Vec3> p = mesh.points, q = p, b(n);
+  const std::vector<Vec3>& origin = mesh.points;
+  const auto limited = [&](std::size_t v, Vec3 to) {
+    Vec3 d = to - origin[v];
+    if (mesh.flat[v]) d.z = 0;
+    const double s = std::sqrt((d.x * d.x + d.y * d.y) / (o.limit_xy_mm * o.limit_xy_mm) +
+                               d.z * d.z / (o.limit_z_mm * o.limit_z_mm)) /
+                     (o.share.empty() ? 1.0 : std::max(1e-6f, o.share[v]));
+    return s > 1 ? origin[v] + (1 / s) * d : origin[v] + d;
+  };
+  const bool taubin = o.taubin_lambda != 0;
+  for (int pass = 0; pass < o.passes; ++pass) {
+    if (taubin) {
+      for (double factor : {o.taubin_lambda, o.taubin_mu}) {
+        for_each_index(n, o.threads, [&](std::size_t v) {
+          if (around.moves(v)) q[v] = p[v] + factor * (around.mean(p, v) - p[v]);
+        });
+        std::swap(p, q);
+      }
+      for_each_index(n, o.threads, [&](std::size_t v) {
+        if (around.moves(v)) p[v] = limited(v, p[v]);
+      });
+      continue;
+    }
+    for_each_index(n, o.threads, [&](std::size_t v) {
+      if (!around.moves(v)) return;
+      q[v] = around.mean(p, v);
+      b[v] = q[v] - (o.alpha * origin[v] + (1 - o.alpha) * p[v]);
+    });
+    for_each_index(n, o.threads, [&](std::size_t v) {
+      if (around.moves(v)) p[v] = limited(v, q[v] - (o.beta * b[v] + (1 - o.beta) * around.mean(b, v)));
+    });
+    q = p;
+  }
+  return p;
+}
 
 SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets, const MoveLimits& keep,
                              int threads) {

@@ -27,6 +27,9 @@ struct SmoothingResult {
   int rounds = 0;
 };
 
+/// Places of the vertices when smoothed, within the limits but without any guard.
+std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOptions& options);
+
 /// HC-Laplacian smoothing of a complex [Vollmer, Mencl, Mueller 1999]: vertices of curves average along their
 /// curve only, fixed points stay, caps stay plane. All moves are tried at once; vertices of triangles that
 /// then offend (see guard.h) go half of their way, and so on, so that the result is as valid as the input
