@@ -42,9 +42,14 @@ double mean_distance(const SurfaceSamples& samples, const ComplexMesh& mesh, dou
   if (samples.points.empty()) return 0;
   const Reference now(mesh, reach_mm, threads);
   std::vector<double> off(samples.points.size());
-  for_each_index(off.size(), threads, [&](std::size_t i) {
-    const auto foot = now.nearest(samples.points[i], samples.patches[i], reach_mm, -1, 0);
-    off[i] = foot ? foot->distance_mm : reach_mm;
+  constexpr std::size_t kRun = 256;
+  parallel_for((off.size() + kRun - 1) / kRun, threads, [&](std::size_t run) {
+    std::int32_t hint = -1;
+    for (std::size_t i = run * kRun; i < std::min(off.size(), (run + 1) * kRun); ++i) {
+      const auto foot = now.nearest(samples.points[i], samples.patches[i], reach_mm, hint, 0.1 * reach_mm);
+      if (foot) hint = foot->face;
+      off[i] = foot ? foot->distance_mm : reach_mm;
+    }
   });
   double sum = 0;
   for (double d : off) sum += d;
