@@ -475,7 +475,10 @@ std::vector<std::int32_t> ComplexMesh::disc_behind(const std::array<std::int32_t
   return disc;
 }
 
-void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc, const std::array<std::int32_t, 3>& v) {
+void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc, const std::array<std::int32_t, 3>& loop) {
+  std::array<std::int32_t, 3> v = loop;
+  for (std::int32_t t : disc)
+    if (runs(triangles[t].v, v[1], v[0])) std::swap(v[0], v[1]);
   for (std::int32_t t : disc)
     for (std::int32_t x : triangles[t].v) drop(star[x], t);
   for (std::size_t i = 1; i < disc.size(); ++i) triangles[disc[i]].patch = -1;

@@ -260,9 +260,7 @@ bool LocalOperations::cut_tip(std::int32_t a, std::int32_t b) {
         for (std::int32_t v : mesh_.triangles[t].v)
           far = std::max(far, norm(mesh_.points[v] - nearest_on_triangle(mesh_.points[v], p, q, r)));
       if (far > asked(a, b)) continue;
-      const auto& v = mesh_.triangles[start].v;
-      const bool forward = (v[0] == a && v[1] == b) || (v[1] == a && v[2] == b) || (v[2] == a && v[0] == b);
-      added_ = {forward ? std::array<std::int32_t, 3>{a, b, c} : std::array<std::int32_t, 3>{b, a, c}};
+      added_ = {{a, b, c}};
       double worst = 10;
       for (std::int32_t t : removed_) worst = std::min(worst, angle(mesh_.triangles[t].v));
       if (angle(added_[0]) < worst) continue;
