@@ -25,15 +25,24 @@ class Remesher {
 
   void round(int number) {
     regrid();
-    split_long(kSqrt2);
+    split_long();
     collapse_short(std::vector<double>(number == 0 ? 8 : 3, 1 / kSqrt2), (number == 0 ? 8 : 15) * kDegree);
     flip_all(2 * kDegree, number + 1 < o_.rounds, 2);
     for (int pass = 0; pass < (number + 2 < o_.rounds ? 1 : 2); ++pass) move(relocated());
   }
 
-  void split_all() {
+  /// Edges that blocks could not work on, in the whole: turned where that helps (rows of points lie along them), else split.
+  void split_rest() {
     regrid();
-    split_long(2);
+    for (int pass = 0; pass < 20; ++pass) {
+      auto list = ranked([](double r) { return r > 2; });
+      std::size_t done = 0;
+      for (auto it = list.rbegin(); it != list.rend(); ++it) {
+        const auto [a, b] = it->second;
+        if (mesh_.has_edge(a, b)) done += ops_.flip(a, b, 0.5 * kDegree, false) || ops_.split(a, b);
+      }
+      if (done == 0) break;
+    }
   }
 
   void coarsen() {
@@ -107,9 +116,9 @@ class Remesher {
     return out;
   }
 
-  void split_long(double above) {
+  void split_long() {
     for (int pass = 0; pass < 12; ++pass) {
-      auto list = ranked([above](double r) { return r > above; });
+      auto list = ranked([](double r) { return r > kSqrt2; });
       std::size_t done = 0;
       for (auto it = list.rbegin(); it != list.rend(); ++it)
         if (mesh_.has_edge(it->second[0], it->second[1])) done += ops_.split(it->second[0], it->second[1]);
@@ -433,7 +442,7 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
   for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });
   for (int round = 0; round < options.rounds; ++round) {
     in_blocks(false, [&](Remesher& r) { r.round(round); });
-    if (round == 0 && has_long_edges(mesh, size)) in_blocks(true, [](Remesher& r) { r.split_all(); });
+    if (round + 1 < options.rounds && has_long_edges(mesh, size)) in_blocks(true, [](Remesher& r) { r.split_rest(); });
     if (options.deviation_mm > 0 && round < 2) shorten_where_off(mesh, size, reference, options);
     progress.advance(0.3 + 0.4 * (round + 1) / options.rounds);
   }

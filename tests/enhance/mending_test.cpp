@@ -123,12 +123,12 @@ TEST(EnhanceMending, FacesLongerThanABlockAreSplit) {
   ContourFile file;
   file.path = "drum";
   file.label = 1;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 24; ++k) {
     ContourSection section;
-    section.z_mm = k;
+    section.z_mm = 0.5 * k;
     ContourPolygon p;
-    for (int i = 0; i < 380; ++i)
-      p.points.push_back({60 * std::cos(2 * M_PI * i / 380), 60 * std::sin(2 * M_PI * i / 380)});
+    for (int i = 0; i < 760; ++i)
+      p.points.push_back({60 * std::cos(2 * M_PI * i / 760), 60 * std::sin(2 * M_PI * i / 760)});
     section.polygons.push_back(p);
     file.sections.push_back(section);
   }
@@ -138,11 +138,11 @@ TEST(EnhanceMending, FacesLongerThanABlockAreSplit) {
   flat.caps = Caps::flat;
   Stack stack = sections_from_contours({file}, warnings);
   const InterfaceComplex drum = stitch_sections(stack, flat, quiet).complex;
-  ASSERT_GT(drum.points.size(), 4000u);
+  ASSERT_GT(drum.points.size(), 16000u);
   ASSERT_GT(longest_edge(drum), 60);
-  const EnhanceResult r = enhance(drum, 2);
+  const EnhanceResult r = enhance(drum, 0.9, 0.5);
   EXPECT_EQ(r.level, "enhanced");
-  EXPECT_LT(longest_edge(r.complex), 4);
+  EXPECT_LT(longest_edge(r.complex), 2);
   EXPECT_GT(check_surface(r.complex).angle_min_deg, 20);
 }
 
