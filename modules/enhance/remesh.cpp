@@ -262,14 +262,24 @@ class Remesher {
     });
   }
 
+  /// Triangles that pass, ascending.
+  template <class Pass>
+  std::vector<std::int32_t> triangles_that(Pass pass) const {
+    std::vector<char> passes(mesh_.triangles.size());
+    for_each_index(passes.size(), o_.threads, [&](std::size_t t) {
+      passes[t] = mesh_.alive(static_cast<std::int32_t>(t)) && pass(static_cast<std::int32_t>(t));
+    });
+    std::vector<std::int32_t> out;
+    for (std::size_t t = 0; t < passes.size(); ++t)
+      if (passes[t]) out.push_back(static_cast<std::int32_t>(t));
+    return out;
+  }
+
   std::size_t improve_worst(double below_deg) {
     const double limit = below_deg * kDegree;
     std::vector<std::pair<double, std::int32_t>> worst;
-    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
-      if (mesh_.alive(t)) {
-        const double a = ops_.angle(mesh_.triangles[t].v);
-        if (a < limit) worst.push_back({a, t});
-      }
+    for (std::int32_t t : triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit; }))
+      worst.push_back({ops_.angle(mesh_.triangles[t].v), t});
     std::sort(worst.begin(), worst.end());
     std::size_t done = 0;
     for (const auto& [before, t] : worst) {
@@ -283,13 +293,13 @@ class Remesher {
   /// Moves the vertices of bad triangles, and those next to them, to where the surface is even.
   std::size_t iron_bad() {
     std::vector<std::int32_t> all, around;
-    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
-      if (mesh_.alive(t) && (ops_.angle(mesh_.triangles[t].v) < 0.5 * o_.mend_angle_deg * kDegree || is_folded(t)))
-        for (std::int32_t v : mesh_.triangles[t].v) {
-          all.push_back(v);
-          mesh_.neighbours(v, around);
-          all.insert(all.end(), around.begin(), around.end());
-        }
+    const double limit = 0.5 * o_.mend_angle_deg * kDegree;
+    for (std::int32_t t : triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit || is_folded(x); }))
+      for (std::int32_t v : mesh_.triangles[t].v) {
+        all.push_back(v);
+        mesh_.neighbours(v, around);
+        all.insert(all.end(), around.begin(), around.end());
+      }
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     std::size_t done = 0;
