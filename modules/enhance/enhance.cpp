@@ -27,6 +27,7 @@ constexpr double kDeviationAim = 0.33;
 constexpr std::size_t kSamples = 20000;    // of the stitched surface, to tell its distance
 constexpr double kSmoothingCost = 0.031;  // pixels of mean distance for which the steps of single voxels go
 constexpr double kSheetGap = 0.2;  // of the edge length: what sheets keep apart in the end, where small moves allow it
+constexpr int kLowPasses = 3;     // of the low-pass on the remeshed surface, by default
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
 std::string number(double x) {
@@ -101,20 +102,25 @@ class Enhancement {
                  number(*o_.edge_min_mm) + " > " + number(*o_.edge_max_mm), "swap them");
   }
 
+  static std::string text(const ShellCount& c) { return std::to_string(c.outer) + " pieces and " + std::to_string(c.inward) + " holes"; }
+
   void warn(const std::string& text) { result_.warnings.push_back(text); }
 
   /// True when the whole surface is as sound as the stitched one, which an exact test of all its triangles says.
   bool stands(const char* level, const ComplexMesh& mesh) {
-    std::size_t shells = 0;
+    std::map<Label, ShellCount> shells;
     shell_sizes(mesh, &shells);
     const std::size_t contacts = count_contacts(mesh, o_.threads);
     if (contacts == 0 && shells == shells_) {
       result_.level = level;
       return true;
     }
-    warn("the " + std::string(level) + " surface was given up: " +
-         (contacts > 0 ? std::to_string(contacts) + " triangles meet others"
-                       : "closed shells went from " + std::to_string(shells_) + " to " + std::to_string(shells)));
+    std::string why = std::to_string(contacts) + " triangles meet others";
+    if (contacts == 0)
+      for (const auto& [label, was] : shells_)
+        if (const ShellCount is = shells[label]; !(is == was))
+          why = "label " + std::to_string(label) + " went from " + text(was) + " to " + text(is);
+    warn("the " + std::string(level) + " surface was given up: " + why);
     return false;
   }
 
@@ -281,7 +287,7 @@ class Enhancement {
 
   /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps. By default it
   /// may cost little distance: single steps go for that; of larger ones (of images with finer voxels than they were taken
-  /// with) only a light pass takes some. Each pass that is asked for beyond the default is done.
+  /// with) only a light pass takes some. What is asked for beyond the default is done whatever it costs.
   void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     if (o_.smooth_passes == 0) return;
     SmoothingOptions s;
@@ -292,7 +298,7 @@ class Enhancement {
     s.threads = o_.threads;
     s.taubin_lambda = 0.5;
     s.taubin_mu = -0.53;
-    s.passes = o_.smooth_passes > kSmoothPasses ? o_.smooth_passes - kSmoothPasses : 3;
+    s.passes = kLowPasses + std::max(0, o_.smooth_passes - kSmoothPasses);
     if (o_.smooth_passes <= kSmoothPasses && smoothing_cost(mesh, samples_, s) > kSmoothingCost * o_.pixel_mm) {
       s.passes = 1;
       s.taubin_lambda = 0.3;
@@ -327,7 +333,7 @@ class Enhancement {
   std::vector<double> shell_;        // of each vertex of the stitched complex: size of its smallest closed shell
   std::vector<double> wall_;         // and how thick its walls are there, up to the reach
   double wall_reach_ = 0;
-  std::size_t shells_ = 0;
+  std::map<Label, ShellCount> shells_;  // of each label
   SurfaceSamples samples_;  // of the stitched surface
 };
 

@@ -278,8 +278,23 @@ bool LocalOperations::cut_tip(std::int32_t a, std::int32_t b) {
   return false;
 }
 
+bool LocalOperations::is_speck(std::int32_t v) const {
+  constexpr std::size_t kFew = 24;
+  std::vector<std::int32_t> sheet(mesh_.star[v].begin(), mesh_.star[v].end()), around;
+  for (std::size_t i = 0; i < sheet.size() && sheet.size() <= kFew; ++i) {
+    const auto& t = mesh_.triangles[sheet[i]].v;
+    for (int k = 0; k < 3; ++k) {
+      if (mesh_.is_curve_edge(t[k], t[(k + 1) % 3])) continue;
+      mesh_.edge_triangles(t[k], t[(k + 1) % 3], around);
+      for (std::int32_t u : around)
+        if (std::find(sheet.begin(), sheet.end(), u) == sheet.end()) sheet.push_back(u);
+    }
+  }
+  return sheet.size() <= kFew;
+}
+
 bool LocalOperations::iron(std::int32_t v) {
-  if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty()) return false;
+  if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty() || is_speck(v)) return false;
   const Vec3 here = mesh_.points[v];
   Vec3 mean;
   if (!mesh_.curve[v].empty()) {

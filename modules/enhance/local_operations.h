@@ -63,6 +63,7 @@ class LocalOperations {
   double fold() const { return lenient ? 0.1 : 0.35; }  ///< cosine: a triangle's normal against that of its old fan
   double smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const;
   void fan_normals(std::int32_t v);
+  bool is_speck(std::int32_t v) const;  ///< its sheet, as far as curves, is of few triangles: one vertex could turn it inside out
   int ideal_valence_error(std::int32_t v, int change) const;
 
   double closer_ = 1;

@@ -55,17 +55,15 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
   const Facets facets(mesh, threads);
   const std::vector<std::array<std::int32_t, 2>> edges = mesh.edges();
   std::vector<char> is_sharp(edges.size(), 0);
-  for_each_index(
-      edges.size(), threads,
-      [&](std::size_t e) {
-        const auto [a, b] = edges[e];
-        if (mesh.is_curve_edge(a, b)) return;
-        ShortList around;
-        for (std::int32_t t : mesh.star[a])
-          if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b) around.push_back(t);
-        const Vec3 &n = facets.area[around[0]], &m = facets.area[around[1]];
-        is_sharp[e] = dot(n, m) <= limit * norm(n) * norm(m);
-      });
+  for_each_index(edges.size(), threads, [&](std::size_t e) {
+    const auto [a, b] = edges[e];
+    if (mesh.is_curve_edge(a, b)) return;
+    ShortList around;
+    for (std::int32_t t : mesh.star[a])
+      if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b) around.push_back(t);
+    const Vec3 &n = facets.area[around[0]], &m = facets.area[around[1]];
+    is_sharp[e] = dot(n, m) <= limit * norm(n) * norm(m);
+  });
   const std::size_t run = edges.size() / 16 + 1;
   parallel_for(16, threads, [&](std::size_t part) {
     std::vector<std::int32_t> around, list, stamp(mesh.triangles.size(), 0);

@@ -157,6 +157,7 @@ SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& si
   wanted.clearance_rel = gap_rel;
   MoveLimits limits = wanted;
   limits.clearance_rel = keep.clearance_rel;
+  limits.turn_deg = 90;  // no speck is to be turned inside out
   const std::vector<float> gaps = clearances(mesh, wanted);
   const std::vector<Vec3> origin = mesh.points;
   double sum = 0;

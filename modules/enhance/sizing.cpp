@@ -234,7 +234,7 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
   return thin;
 }
 
-std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
+std::vector<double> shell_sizes(const ComplexMesh& mesh, std::map<Label, ShellCount>* shells) {
   // A side of a triangle belongs to a label; sides of one label that meet at an edge belong to one shell.
   DisjointSets sets(2 * mesh.triangles.size());
   const auto label = [&](std::int32_t i) { return mesh.labels()[mesh.sides(mesh.triangles[i / 2].patch)[i % 2]]; };
@@ -270,11 +270,11 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells) {
     volume[r] += i % 2 ? -part : part;
   }
   std::vector<double> out(mesh.points.size(), std::numeric_limits<double>::infinity());
-  std::size_t count = 0;
+  std::map<Label, ShellCount> count;
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(sets.size()); ++i) {
     if (!mesh.alive(i / 2) || label(i) == 0) continue;
     const std::int32_t r = sets.find(i);
-    count += r == i;
+    if (r == i) ++(volume[r] < 0 ? count[label(i)].inward : count[label(i)].outer);
     for (std::int32_t v : mesh.triangles[i / 2].v) out[v] = std::min(out[v], std::cbrt(std::abs(volume[r])));
   }
   if (shells) *shells = count;

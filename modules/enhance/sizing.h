@@ -24,8 +24,14 @@ struct SizingOptions {
 /// from both sides; no more than reach_mm, infinite where nothing is hit.
 std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int threads);
 
+/// The closed shells of a label: outer ones, and those round holes in it, which face inwards.
+struct ShellCount {
+  std::size_t outer = 0, inward = 0;
+  bool operator==(const ShellCount& o) const { return outer == o.outer && inward == o.inward; }
+};
+
 /// For every vertex the cube root of the volume of the smallest closed shell of a label that it is on, mm.
-std::vector<double> shell_sizes(const ComplexMesh& mesh, std::size_t* shells = nullptr);
+std::vector<double> shell_sizes(const ComplexMesh& mesh, std::map<Label, ShellCount>* shells = nullptr);
 
 /// H-correction [Borouchaki, Hecht, Frey 1998]: sizes grow along the surface by at most the gradation.
 void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>& size);

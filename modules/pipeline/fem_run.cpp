@@ -4,7 +4,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "fem/assign_materials.h"
 #include "fem/element_quality.h"
 #include "fem/join_parts.h"
@@ -16,6 +15,7 @@
 #include "meshio/read_mesh.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
+#include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
 #include "report/html_report.h"
 #include "validate/check_volume.h"
@@ -73,7 +73,7 @@ class FemRun {
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
       for (Vec3& p : product.mesh.points) p = {-p.x, -p.y, p.z};
     HtmlPictures pictures;
-    if (std::any_of(o_.mesh.reports.begin(), o_.mesh.reports.end(), is_html)) clock.run("write", [&] { pictures = draw(product); });
+    if (asks_for_html(o_.mesh.reports)) clock.run("write", [&] { pictures = draw(product); });
     if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.threads;
@@ -82,14 +82,12 @@ class FemRun {
     clock.run("write", [&] { model(std::move(product), report, files); });
     report.peak_rss_mb = peak_memory_mb();
     for (const std::string& r : o_.mesh.reports) {
-      const std::string text = is_html(r) ? to_html({{"mesh", &report, &pictures}}) : to_json(report);
+      const std::string text = is_html_report(r) ? to_html({{"mesh", &report, &pictures}}) : to_json(report);
       files.write(r, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
     }
     files.commit();
     return report;
   }
-
-  static bool is_html(const std::string& path) { return ends_with(path, ".html"); }
 
   HtmlPictures draw(const MeshProduct& product) const {
     const InterfaceComplex surface = {product.mesh.points, product.mesh.faces};
@@ -106,8 +104,7 @@ class FemRun {
     for (const std::string& path : o_.mesh.outputs)
       if (!is_volume_format(path))
         fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose .inp .feb .bdf .msh .vtu .vtk");
-    for (const std::string& path : o_.mesh.reports)
-      if (!ends_with(path, ".json") && !is_html(path)) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json or .html");
+    check_report_names(o_.mesh.reports);
     if (o_.mesh.space != "lps" && o_.mesh.space != "ras") fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
   }
 

@@ -15,6 +15,7 @@
 #include "interpolate/virtual_slices.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
+#include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
 #include "report/html_report.h"
 #include "pipeline/virtual_sections.h"
@@ -73,8 +74,7 @@ class MeshRun {
       for (const std::string& path : o_.outputs)
         if (ends_with(path, ".mesh"))
           fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
-    for (const std::string& path : o_.reports)
-      if (!ends_with(path, ".json") && !ends_with(path, ".html")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json or .html");
+    check_report_names(o_.reports);
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
   }
 
@@ -109,7 +109,7 @@ class MeshRun {
   }
 
   bool wants_html() const {
-    return std::any_of(o_.reports.begin(), o_.reports.end(), [](const std::string& path) { return ends_with(path, ".html"); });
+    return asks_for_html(o_.reports);
   }
 
   /// --strict must know of a lost component, too.
@@ -552,7 +552,7 @@ class MeshRun {
 
   void write_reports() {
     for (const std::string& path : o_.reports) {
-      const std::string text = ends_with(path, ".html") ? to_html({{"mesh", &report_, &pictures_}}) : to_json(report_);
+      const std::string text = is_html_report(path) ? to_html({{"mesh", &report_, &pictures_}}) : to_json(report_);
       files_.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
     }
   }

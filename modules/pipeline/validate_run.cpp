@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
+#include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/turn_as_a_whole.h"
 #include "report/html_report.h"
@@ -476,8 +477,7 @@ class ValidateRun {
 };
 
 void check_names(const ValidateRunOptions& o) {
-  for (const std::string& path : o.reports)
-    if (!ends_with(path, ".json") && !ends_with(path, ".html")) fail_usage("unknown ending of a report", "'" + path + "'", "choose .json or .html");
+  check_report_names(o.reports);
   if (o.mesh_space != "auto" && o.mesh_space != "lps" && o.mesh_space != "ras")
     fail_usage("unknown space '" + o.mesh_space + "'", "--mesh-space", "choose lps, ras or auto");
 }
@@ -526,7 +526,7 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
   }
   std::vector<RunReport> reports;
   std::vector<HtmlPictures> pictures;
-  const bool html = std::any_of(o.reports.begin(), o.reports.end(), [](const std::string& path) { return ends_with(path, ".html"); });
+  const bool html = asks_for_html(o.reports);
   AtomicFiles files;
   for (const std::string& path : o.meshes) {
     ValidateRun run(o, against ? &*against : nullptr, start, progress);
@@ -544,7 +544,7 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
     subjects.push_back({path.substr(path.rfind('/') + 1), &reports[i], &pictures[i]});
   }
   for (const std::string& path : o.reports) {
-    const std::string text = ends_with(path, ".html") ? to_html(subjects) : reports.size() == 1 ? to_json(reports[0]) : to_json(reports);
+    const std::string text = is_html_report(path) ? to_html(subjects) : reports.size() == 1 ? to_json(reports[0]) : to_json(reports);
     files.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
   }
   files.commit();
