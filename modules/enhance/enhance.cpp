@@ -24,10 +24,10 @@ constexpr double kAim = 1.05;
 // Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.
 constexpr double kDeviationAim = 0.33;
 
-constexpr std::size_t kSamples = 20000;    // of the stitched surface, to tell its distance
+constexpr std::size_t kSamples = 20000;   // of the stitched surface, to tell its distance
 constexpr double kSmoothingCost = 0.031;  // pixels of mean distance for which the steps of single voxels go
-constexpr double kSheetGap = 0.2;  // of the edge length: what sheets keep apart in the end, where small moves allow it
-constexpr int kLowPasses = 3;     // of the low-pass on the remeshed surface, by default
+constexpr double kSheetGap = 0.2;         // of the edge length: what sheets keep apart in the end, where small moves allow it
+constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
 std::string number(double x) {
@@ -294,17 +294,19 @@ class Enhancement {
     s.limit_xy_mm = 0.5 * o_.pixel_mm;
     s.limit_z_mm = 0.5 * o_.gap_mm;
     for (double x : size) s.share.push_back(static_cast<float>(std::min(1.0, x / (4 * o_.pixel_mm))));
-    s.keep = keep;
     s.threads = o_.threads;
     s.taubin_lambda = 0.5;
     s.taubin_mu = -0.53;
     s.passes = kLowPasses + std::max(0, o_.smooth_passes - kSmoothPasses);
-    if (o_.smooth_passes <= kSmoothPasses && smoothing_cost(mesh, samples_, s) > kSmoothingCost * o_.pixel_mm) {
+    std::vector<Vec3> to = smoothed_places(mesh, s);
+    const double reach = 4 * std::max(s.limit_xy_mm, s.limit_z_mm);
+    if (o_.smooth_passes <= kSmoothPasses && distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm) {
       s.passes = 1;
       s.taubin_lambda = 0.3;
       s.taubin_mu = -0.31;
+      to = smoothed_places(mesh, s);
     }
-    smooth(mesh, s);
+    move_guarded(mesh, to, keep, o_.threads);
   }
 
   /// What remeshing and smoothing took from the labels' volumes comes back by small moves.

@@ -28,6 +28,32 @@ void LocalOperations::fan_normals(std::int32_t v) {
   for (std::size_t i = 0; i < star.size(); ++i) normals_[i] = unit(sum[fan_[i]]);
 }
 
+Vec3 LocalOperations::neighbours_mean(std::int32_t v) const {
+  Vec3 sum;
+  for (std::int32_t t : mesh_.star[v])
+    for (std::int32_t x : mesh_.triangles[t].v)
+      if (x != v) sum = sum + mesh_.points[x];
+  return (0.5 / static_cast<double>(mesh_.star[v].size())) * sum;
+}
+
+bool LocalOperations::move(std::int32_t v, const Vec3& to) {
+  if (!mesh_.contains(to)) return false;
+  removed_.assign(mesh_.star[v].begin(), mesh_.star[v].end());
+  added_.clear();
+  for (std::int32_t t : removed_) added_.push_back(mesh_.triangles[t].v);
+  Change c;
+  c.removed = &removed_;
+  c.added = &added_;
+  c.moved = v;
+  c.to = to;
+  c.clearance_mm = clearance_rel() * size_[v];
+  if (!guard.allows(c)) return false;
+  mesh_.points[v] = to;
+  guard.update(removed_);
+  ++counts.relocations;
+  return true;
+}
+
 bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   Vec3 p = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   if (mesh_.flat[a] && mesh_.flat[b] && mesh_.points[a].z == mesh_.points[b].z) p.z = mesh_.points[a].z;
@@ -293,50 +319,32 @@ bool LocalOperations::is_speck(std::int32_t v) const {
   return sheet.size() <= kFew;
 }
 
+bool LocalOperations::crowds(std::int32_t v, const Vec3& to) const {
+  for (std::int32_t t : mesh_.star[v])
+    for (std::int32_t x : mesh_.triangles[t].v) {
+      const double apart = norm(to - mesh_.points[x]);
+      if (x != v && apart < 0.3 * size_[v] && apart < length(v, x)) return true;
+    }
+  return false;
+}
+
 bool LocalOperations::iron(std::int32_t v) {
   if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty() || is_speck(v)) return false;
   const Vec3 here = mesh_.points[v];
   Vec3 mean;
-  if (!mesh_.curve[v].empty()) {
+  if (mesh_.curve[v].empty())
+    mean = neighbours_mean(v);
+  else
     for (std::int32_t c : mesh_.curve[v]) mean = mean + 0.5 * mesh_.points[c];
-  } else {
-    double weight = 0;
-    for (std::int32_t t : mesh_.star[v])
-      for (std::int32_t x : mesh_.triangles[t].v)
-        if (x != v) {
-          mean = mean + mesh_.points[x];
-          weight += 1;
-        }
-    mean = (1 / weight) * mean;
-  }
   Vec3 step = 0.7 * (mean - here);
   if (mesh_.flat[v]) step.z = 0;
   const double l = norm(step), most = 0.5 * size_[v];
   if (!(l > 1e-3 * size_[v])) return false;
   if (l > most) step = (most / l) * step;
-  removed_.assign(mesh_.star[v].begin(), mesh_.star[v].end());
-  added_.clear();
-  for (std::int32_t t : removed_) added_.push_back(mesh_.triangles[t].v);
-  Change c;
-  c.removed = &removed_;
-  c.added = &added_;
-  c.moved = v;
-  c.clearance_mm = clearance_rel() * size_[v];
+  const std::int32_t patch = mesh_.triangles[mesh_.star[v][0]].patch;
   for (double share : {1.0, 0.5, 0.25}) {
-    c.to = here + share * step;
-    const auto foot = reference_.nearest(c.to, mesh_.triangles[mesh_.star[v][0]].patch, reach_rel() * size_[v], -1, 0);
-    if (!foot || !mesh_.contains(c.to)) continue;
-    bool crowded = false;  // a thin neck is not to be drawn together
-    for (const auto& t : added_)
-      for (std::int32_t x : t) {
-        const double apart = norm(c.to - mesh_.points[x]);
-        crowded = crowded || (x != v && apart < 0.3 * size_[v] && apart < length(v, x));
-      }
-    if (crowded || !guard.allows(c)) continue;
-    mesh_.points[v] = c.to;
-    guard.update(removed_);
-    ++counts.relocations;
-    return true;
+    const Vec3 to = here + share * step;
+    if (!crowds(v, to) && reference_.nearest(to, patch, reach_rel() * size_[v], -1, 0) && move(v, to)) return true;
   }
   return false;
 }
@@ -421,15 +429,11 @@ bool LocalOperations::relocate(std::int32_t v) {
     const Vec3 n = normals_[0];
     const Vec3 u = unit(cross(n, std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})), w = cross(n, u);
     double l = 1e300;
-    Vec3 mean;
     for (std::int32_t t : mesh_.star[v])
       for (std::int32_t x : mesh_.triangles[t].v)
-        if (x != v) {
-          l = std::min(l, length(v, x));
-          mean = mean + mesh_.points[x];
-        }
+        if (x != v) l = std::min(l, length(v, x));
     l = std::max(l, 0.25 * size_[v]);
-    offer((0.5 / static_cast<double>(mesh_.star[v].size())) * mean);
+    offer(neighbours_mean(v));
     for (double r : {0.5, 0.25, 0.1})
       for (int k = 0; k < 8; ++k) {
         const double phi = k * M_PI / 4;
@@ -439,22 +443,8 @@ bool LocalOperations::relocate(std::int32_t v) {
   std::stable_sort(places.begin(), places.end(),
                    [](const auto& x, const auto& y) { return x.first > y.first; });
   if (places.size() > 4) places.resize(4);
-  removed_.assign(mesh_.star[v].begin(), mesh_.star[v].end());
-  added_.clear();
-  for (std::int32_t t : removed_) added_.push_back(mesh_.triangles[t].v);
-  Change c;
-  c.removed = &removed_;
-  c.added = &added_;
-  c.moved = v;
-  c.clearance_mm = clearance_rel() * size_[v];
-  for (const auto& [a, q] : places) {
-    c.to = q;
-    if (!mesh_.contains(q) || !guard.allows(c)) continue;
-    mesh_.points[v] = q;
-    guard.update(removed_);
-    ++counts.relocations;
-    return true;
-  }
+  for (const auto& [a, q] : places)
+    if (move(v, q)) return true;
   return false;
 }
 

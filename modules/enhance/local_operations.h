@@ -63,6 +63,9 @@ class LocalOperations {
   double fold() const { return lenient ? 0.1 : 0.35; }  ///< cosine: a triangle's normal against that of its old fan
   double smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const;
   void fan_normals(std::int32_t v);
+  Vec3 neighbours_mean(std::int32_t v) const;
+  bool move(std::int32_t v, const Vec3& to);  ///< if the block and the guard allow it
+  bool crowds(std::int32_t v, const Vec3& to) const;  ///< nearer to a neighbour than it was, and near: thin necks are not to be drawn together
   bool is_speck(std::int32_t v) const;  ///< its sheet, as far as curves, is of few triangles: one vertex could turn it inside out
   int ideal_valence_error(std::int32_t v, int change) const;
 

@@ -15,6 +15,7 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 const double kFolded = std::cos(155 * kDegree);  // two triangles whose normals are further apart
 const double kSqrt2 = std::sqrt(2.0);
+constexpr double kMuchTooLong = 2;  // normalised length of an edge that blocks should have split
 
 /// Works on a mesh, or on a block of one.
 class Remesher {
@@ -35,7 +36,7 @@ class Remesher {
   void split_rest() {
     regrid();
     for (int pass = 0; pass < 20; ++pass) {
-      auto list = ranked([](double r) { return r > 2; });
+      auto list = ranked([](double r) { return r > kMuchTooLong; });
       std::size_t done = 0;
       for (auto it = list.rbegin(); it != list.rend(); ++it) {
         const auto [a, b] = it->second;
@@ -395,7 +396,7 @@ bool has_long_edges(const ComplexMesh& mesh, const std::vector<double>& size) {
     if (t.patch >= 0)
       for (int k = 0; k < 3; ++k) {
         const std::int32_t a = t.v[k], b = t.v[(k + 1) % 3];
-        if (norm(mesh.points[a] - mesh.points[b]) > size[a] + size[b]) return true;
+        if (norm(mesh.points[a] - mesh.points[b]) > kMuchTooLong * 0.5 * (size[a] + size[b])) return true;
       }
   return false;
 }

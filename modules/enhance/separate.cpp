@@ -68,12 +68,13 @@ class Separation {
   std::vector<Vec3> places() const {
     std::vector<Vec3> to = mesh_.points;
     for (std::size_t v = 0; v < to.size(); ++v) {
+      if (!(dot(step_[v], step_[v]) > 0)) continue;
       Vec3 from_origin = to[v] + step_[v] - origin_[v];
       double most = 0;
       for (std::int32_t t : mesh_.star[v]) most = std::max<double>(most, gaps_[t]);
       const double l = norm(from_origin);
       if (l > most) from_origin = (most / l) * from_origin;
-      if (dot(step_[v], step_[v]) > 0) to[v] = origin_[v] + from_origin;
+      to[v] = origin_[v] + from_origin;
     }
     return to;
   }
@@ -151,14 +152,13 @@ class Separation {
 
 SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& size, double gap_rel, const MoveLimits& keep,
                                 int threads) {
-  MoveLimits wanted = keep;
-  wanted.corner_angle_deg = std::min(keep.corner_angle_deg, kCornerAngle);
-  wanted.size_mm = &size;
-  wanted.clearance_rel = gap_rel;
-  MoveLimits limits = wanted;
-  limits.clearance_rel = keep.clearance_rel;
+  MoveLimits wide = keep;
+  wide.size_mm = &size;
+  wide.clearance_rel = gap_rel;
+  const std::vector<float> gaps = clearances(mesh, wide);
+  MoveLimits limits = keep;
+  limits.corner_angle_deg = std::min(keep.corner_angle_deg, kCornerAngle);
   limits.turn_deg = 90;  // no speck is to be turned inside out
-  const std::vector<float> gaps = clearances(mesh, wanted);
   const std::vector<Vec3> origin = mesh.points;
   double sum = 0;
   for (double s : size) sum += s;

@@ -56,12 +56,10 @@ double mean_distance(const SurfaceSamples& samples, const ComplexMesh& mesh, dou
   return sum / static_cast<double>(off.size());
 }
 
-double smoothing_cost(ComplexMesh& mesh, const SurfaceSamples& samples, const SmoothingOptions& options) {
-  const double reach = 4 * std::max(options.limit_xy_mm, options.limit_z_mm);
-  const double before = mean_distance(samples, mesh, reach, options.threads);
-  std::vector<Vec3> places = smoothed_places(mesh, options);
+double distance_gained(ComplexMesh& mesh, const SurfaceSamples& samples, std::vector<Vec3> places, double reach_mm, int threads) {
+  const double before = mean_distance(samples, mesh, reach_mm, threads);
   std::swap(mesh.points, places);
-  const double after = mean_distance(samples, mesh, reach, options.threads);
+  const double after = mean_distance(samples, mesh, reach_mm, threads);
   std::swap(mesh.points, places);
   return after - before;
 }

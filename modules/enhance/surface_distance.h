@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "enhance/smoothing.h"
+#include "enhance/complex_mesh.h"
 
 namespace stackmesh {
 
@@ -17,7 +17,7 @@ SurfaceSamples sample_surface(const ComplexMesh& mesh, std::size_t count);
 /// Mean distance of the samples to the sheets of the mesh, mm; what is further than `reach_mm` counts as that.
 double mean_distance(const SurfaceSamples& samples, const ComplexMesh& mesh, double reach_mm, int threads);
 
-/// By how much smoothing (without a guard) would take the samples further from the mesh, on average, mm.
-double smoothing_cost(ComplexMesh& mesh, const SurfaceSamples& samples, const SmoothingOptions& options);
+/// By how much the samples are further from the mesh, on average, when its vertices stand at `places`, mm.
+double distance_gained(ComplexMesh& mesh, const SurfaceSamples& samples, std::vector<Vec3> places, double reach_mm, int threads);
 
 }  // namespace stackmesh

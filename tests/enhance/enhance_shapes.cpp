@@ -1,6 +1,7 @@
 #include "enhance_shapes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace stackmesh::testing_support {
@@ -76,6 +77,19 @@ InterfaceComplex ball(double radius, int levels) {
   for (Vec3& p : c.points) p = (radius / norm(p)) * p;
   for (const auto& f : faces) c.triangles.push_back({f, 1, 0});
   return c;
+}
+
+std::vector<double> bends_deg(const InterfaceComplex& c) {
+  std::map<std::pair<int, int>, Vec3> first;
+  std::vector<double> bends;
+  for (const InterfaceTriangle& t : c.triangles) {
+    const Vec3 n = cross(c.points[t.v[1]] - c.points[t.v[0]], c.points[t.v[2]] - c.points[t.v[0]]);
+    for (int k = 0; k < 3; ++k) {
+      const auto [it, fresh] = first.insert({std::minmax(int(t.v[k]), int(t.v[(k + 1) % 3])), n});
+      if (!fresh) bends.push_back(std::acos(std::clamp(dot(n, it->second) / (norm(n) * norm(it->second)), -1.0, 1.0)) * 180 / M_PI);
+    }
+  }
+  return bends;
 }
 
 double interface_area(const InterfaceComplex& c, Label a, Label b) {

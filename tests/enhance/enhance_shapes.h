@@ -1,5 +1,6 @@
 #pragma once
 #include <cstring>
+#include <vector>
 
 #include "model/complex.h"
 
@@ -13,6 +14,9 @@ InterfaceComplex ball(double radius, int levels);
 
 /// Two square plates of labels 1 and 2, `thickness` high, with a gap between them.
 InterfaceComplex two_plates(double side, double thickness, double gap);
+
+/// Angles between the normals of the triangles of each edge.
+std::vector<double> bends_deg(const InterfaceComplex& c);
 
 double interface_area(const InterfaceComplex& c, Label a, Label b);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 
 #include "base/error.h"
 #include "checks.h"
@@ -36,19 +37,8 @@ bool is_named(const std::vector<std::string>& warnings, Label label) {
 }
 
 double mean_bend_deg(const InterfaceComplex& c) {
-  std::map<std::pair<int, int>, Vec3> first;
-  double sum = 0;
-  int count = 0;
-  for (const InterfaceTriangle& t : c.triangles) {
-    const Vec3 n = cross(c.points[t.v[1]] - c.points[t.v[0]], c.points[t.v[2]] - c.points[t.v[0]]);
-    for (int k = 0; k < 3; ++k) {
-      const auto [it, fresh] = first.insert({std::minmax(int(t.v[k]), int(t.v[(k + 1) % 3])), n});
-      if (fresh) continue;
-      sum += std::acos(std::min(1.0, std::max(-1.0, dot(n, it->second) / (norm(n) * norm(it->second))))) * 180 / M_PI;
-      ++count;
-    }
-  }
-  return sum / count;
+  const std::vector<double> bends = bends_deg(c);
+  return std::accumulate(bends.begin(), bends.end(), 0.0) / static_cast<double>(bends.size());
 }
 
 /// What must hold of any enhanced complex; "" if it does.

@@ -1,7 +1,6 @@
 // What the remesher does where its gentle means fail: needles along curves, folds, tips, long faces, sheets too near.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "checks.h"
 #include "contour/extract.h"
@@ -25,19 +24,9 @@ EnhanceResult enhance(const InterfaceComplex& c, double edge_mm, double pixel_mm
   return enhance_complex(c, o, quiet);
 }
 
-/// Largest angle between the normals of neighbouring triangles.
 double largest_bend_deg(const InterfaceComplex& c) {
-  std::map<std::pair<int, int>, Vec3> first;
-  double largest = 0;
-  for (const InterfaceTriangle& t : c.triangles) {
-    const Vec3 n = cross(c.points[t.v[1]] - c.points[t.v[0]], c.points[t.v[2]] - c.points[t.v[0]]);
-    for (int k = 0; k < 3; ++k) {
-      const auto [it, fresh] = first.insert({std::minmax(int(t.v[k]), int(t.v[(k + 1) % 3])), n});
-      if (!fresh)
-        largest = std::max(largest, std::acos(std::clamp(dot(n, it->second) / (norm(n) * norm(it->second)), -1.0, 1.0)) * 180 / M_PI);
-    }
-  }
-  return largest;
+  const std::vector<double> bends = bends_deg(c);
+  return *std::max_element(bends.begin(), bends.end());
 }
 
 double longest_edge(const InterfaceComplex& c) {
