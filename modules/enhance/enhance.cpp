@@ -287,26 +287,31 @@ class Enhancement {
 
   /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps. By default it
   /// may cost little distance: single steps go for that; of larger ones (of images with finer voxels than they were taken
-  /// with) only a light pass takes some. What is asked for beyond the default is done whatever it costs.
+  /// with) only a light pass takes some. What is asked for beyond the default follows, whatever it costs, with limits of its own.
   void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     if (o_.smooth_passes == 0) return;
     SmoothingOptions s;
     s.limit_xy_mm = 0.5 * o_.pixel_mm;
     s.limit_z_mm = 0.5 * o_.gap_mm;
     for (double x : size) s.share.push_back(static_cast<float>(std::min(1.0, x / (4 * o_.pixel_mm))));
+    s.keep = keep;
     s.threads = o_.threads;
+    SmoothingOptions light = s;
+    light.passes = 1;
+    light.taubin_lambda = 0.3;
+    light.taubin_mu = -0.31;
+    s.passes = kLowPasses;
     s.taubin_lambda = 0.5;
     s.taubin_mu = -0.53;
-    s.passes = kLowPasses + std::max(0, o_.smooth_passes - kSmoothPasses);
-    std::vector<Vec3> to = smoothed_places(mesh, s);
+    const std::vector<Vec3> to = smoothed_places(mesh, s);
     const double reach = 4 * std::max(s.limit_xy_mm, s.limit_z_mm);
-    if (o_.smooth_passes <= kSmoothPasses && distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm) {
-      s.passes = 1;
-      s.taubin_lambda = 0.3;
-      s.taubin_mu = -0.31;
-      to = smoothed_places(mesh, s);
-    }
-    move_guarded(mesh, to, keep, o_.threads);
+    if (distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm)
+      smooth(mesh, light);
+    else
+      move_guarded(mesh, to, keep, o_.threads);
+    if (o_.smooth_passes <= kSmoothPasses) return;
+    s.passes = o_.smooth_passes - kSmoothPasses;
+    smooth(mesh, s);
   }
 
   /// What remeshing and smoothing took from the labels' volumes comes back by small moves.
