@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <set>
 
@@ -30,10 +31,11 @@ std::string written_name(const std::string& output, const Stack& stack) {
 void run(const ContoursArguments& a) {
   if (!is_section_format(a.output)) fail_usage("unknown ending of an output", a.output, "choose .json, .svg or .cnt");
   const auto progress = a.terminal.make_progress();
-  const ContourOptions options = a.contours.options();
+  const SectionOptions options = a.contours.options();
   Input input = read_input(a.input.options());
-  check_stack_axis(input, options.axis);
-  const Stack stack = input.sections ? std::move(*input.sections) : extract_sections(*input.volume, options, *progress).stack;
+  check_stack_axis(input, options.contours.axis);
+  Stack stack = input.sections ? std::move(*input.sections) : volume_sections(*input.volume, options, *progress).stack;
+  stack.sections.erase(std::remove_if(stack.sections.begin(), stack.sections.end(), [](const Section& s) { return s.interpolated; }), stack.sections.end());
   AtomicFiles files;
   write_sections(files, a.output, stack);
   files.commit();

@@ -15,6 +15,7 @@ struct EnhanceArguments {
   std::string edge_length, interpolate = "auto";
   double deviation = 0, edge_min = 0, edge_max = 0, gradation = 1.3;
   int smooth = 5;
+  bool raw = false;
   long target_tets = 1000000;
   bool off = false;
 };
@@ -58,7 +59,8 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_option("--edge-max", e.edge_max, "largest edge of --deviation, mm")->check(positive);
   command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(number_in(1, 100, "a number from 1 to 100"))->capture_default_str();
   command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none; each above 5 takes more of the voxels' steps away")->check(CLI::Range(0, 10000))->capture_default_str();
-  command.add_flag(target == Target::volume ? "--no-enhance" : "--raw,--no-enhance", e.off, "the stitched surface as it is");
+  command.add_flag("--no-enhance", e.off, "the stitched surface as it is");
+  if (target == Target::surface) command.add_flag("--raw", e.raw, "the stitched surface of the pixels' own outlines, without fairing and enhancement");
   const std::vector<CLI::Option*> of_volumes = {
       command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str(),
       command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3; per label 5=2.0,9=1.0"),
@@ -86,7 +88,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.command = target == Target::volume ? "mesh" : "surface";
   o.version = STACKMESH_VERSION;
   o.input = a.input.options();
-  o.contours = a.contours.options();
+  o.sections = a.contours.options();
   o.threads = a.contours.threads;
   o.stitch.snap_mm = a.snap_mm;
   parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
@@ -110,8 +112,12 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.strict = a.strict;
 
   const EnhanceArguments& e = a.enhance;
-  o.virtual_sections = parse_interpolate(e.interpolate);
-  o.enhance = !e.off;
+  o.sections.virtual_sections = parse_interpolate(e.interpolate);
+  o.enhance = !e.off && !e.raw;
+  if (e.raw) {  // the voxels' own outlines
+    if (command.get_option("--band")->count() > 0) fail_usage("--band has no meaning beside --raw", "--raw", "leave one of them out: the raw surface follows the outlines of the pixels");
+    o.sections.band_px = 0;
+  }
   if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 10000000;
   if (!e.edge_length.empty()) o.label_edges_text = parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.enhancement.edge_length_mm);
   if (e.deviation > 0) o.enhancement.deviation_mm = e.deviation;
@@ -123,16 +129,17 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   const bool budget_asked = command.get_option("--target-tets")->count() > 0;
   const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
   if (budget_asked || !sizes_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
-  if (budget_asked && (!e.edge_length.empty() || e.off))
-    o.notes.push_back(std::string("--target-tets has no effect beside ") + (e.off ? "--no-enhance" : "--edge-length") + ": the size is what that asks for");
+  if (budget_asked && (!e.edge_length.empty() || !o.enhance))
+    o.notes.push_back(std::string("--target-tets has no effect beside ") + (!o.enhance ? "--no-enhance" : "--edge-length") + ": the size is what that asks for");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
-                    {"simplify_px", text_of(a.contours.simplify_px)},
+                    {"simplify_px", a.contours.simplify_px >= 0 ? text_of(a.contours.simplify_px) : "default"},
+                    {"band_px", text_of(o.sections.band_px)},
                     {"snap_mm", text_of(a.snap_mm)},
                     {"caps", a.caps},
                     {"interpolate", e.interpolate},
-                    {"enhance", e.off ? "off" : "on"},
+                    {"enhance", o.enhance ? "on" : "off"},
                     {"smooth", std::to_string(e.smooth)},
                     {"edge_length_mm", e.edge_length.empty() ? "unset" : e.edge_length},
                     {"deviation_mm", e.deviation > 0 ? text_of(e.deviation) : "half a pixel"},

@@ -67,21 +67,26 @@ InputOptions InputArguments::options() const {
 
 void ContourArguments::add_to(CLI::App& command) {
   command.add_option("--axis", axis, "stacking axis: auto (the coarsest spacing), x, y or z")->capture_default_str();
-  command.add_option("--simplify", simplify_px, "contour simplification in pixels; 0 keeps every crack")
-      ->check(number_in(0, 1000, "a number from 0 to 1000"))->capture_default_str();
+  command.add_option("--simplify", simplify_px, "largest deviation of a simplified contour in pixels (default: 0.05, with --band 0 0.5); 0 keeps every vertex")
+      ->check(number_in(0, 1000, "a number from 0 to 1000"));
+  command.add_option("--band", band_px, "how far a contour may leave the middle between pixel centres, in pixels: up to 0.5 every voxel centre keeps its label; more smooths "
+      "labels that were drawn slice by slice; 0 keeps the pixels' own outlines")
+      ->check(number_in(0, 3, "a number from 0 to 3"))->capture_default_str();
   command.add_option("--threads", threads, "threads (default: all)")->check(CLI::Range(1, 1024));
 }
 
-ContourOptions ContourArguments::options() const {
-  ContourOptions o;
-  o.simplify_px = simplify_px;
+SectionOptions ContourArguments::options() const {
+  SectionOptions out;
+  ContourOptions& o = out.contours;
+  if (simplify_px >= 0) out.simplify_px = simplify_px;
+  out.band_px = band_px;
   o.threads = threads;
   if (axis == "auto") o.axis = StackAxis::automatic;
   else if (axis == "x") o.axis = StackAxis::x;
   else if (axis == "y") o.axis = StackAxis::y;
   else if (axis == "z") o.axis = StackAxis::z;
   else fail_usage("unknown axis '" + axis + "'", "--axis", "choose auto, x, y or z");
-  return o;
+  return out;
 }
 
 void TerminalArguments::add_to(CLI::App& command) {

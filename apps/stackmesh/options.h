@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "contour/extract.h"
 #include "pipeline/input.h"
+#include "pipeline/volume_sections.h"
 #include "stitch/stitch.h"
 
 namespace stackmesh::app {
@@ -25,10 +25,11 @@ struct InputArguments {
 /// --axis, --simplify, --threads.
 struct ContourArguments {
   std::string axis = "auto";
-  double simplify_px = 0.5;
+  double simplify_px = -1;  // below 0: the default
+  double band_px = 0.5;
   int threads = 0;
   void add_to(CLI::App& command);
-  ContourOptions options() const;  ///< @throws Error(usage)
+  SectionOptions options() const;  ///< @throws Error(usage)
 };
 
 /// --progress, --quiet, --verbose.

@@ -30,7 +30,7 @@ ValidateRunOptions to_options(const ValidateArguments& a) {
   }
   ContourArguments contours;
   contours.axis = a.axis;
-  o.axis = contours.options().axis;
+  o.axis = contours.options().contours.axis;
   o.mesh_space = a.space;
   o.read.label_array = a.array;
   if (!a.limits.empty()) o.limits = read_limits(a.limits);

@@ -3,20 +3,13 @@
 #include <functional>
 #include <vector>
 
+#include "model/faired_labels.h"
+#include "model/slices.h"
 #include "model/stack.h"
 
 namespace stackmesh {
 
 constexpr std::int32_t kGridPerPixel = 1024;  ///< grid units in a pixel
-
-/// A slice of palette indices, rows along y.
-struct Slice {
-  int width = 0, height = 0;
-  std::vector<std::uint16_t> pixels;
-  std::uint16_t at(int x, int y) const {
-    return x < 0 || y < 0 || x >= width || y >= height ? 0 : pixels[static_cast<std::size_t>(y) * width + x];
-  }
-};
 
 /// A vertex of a crack contour: the pixel corner (x, y), and where it is drawn.
 struct CrackVertex {
@@ -44,7 +37,8 @@ struct CornerRules {
   std::function<bool(int xa, int ya, int xb, int yb)> same_component;
   bool part = false;  ///< draw contours that pass a corner on both sides a quarter pixel apart
   std::vector<std::uint64_t>
-      keep;  ///< keys (components.h) of corners that simplification must not drop, ascending
+      keep;  ///< keys (components.h) of corners that stay where they are and that simplification must not drop, ascending
+  const std::vector<FairedLabels::Corner>* faired = nullptr;  ///< where the other corners are drawn; needs `part`
 };
 
 /// The crack contours of all labels of a slice as shared arcs. Where pixels touch by a corner only, one fixed
@@ -53,7 +47,8 @@ struct CornerRules {
 SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules);
 
 /// Simplifies arcs with tolerance (pixels); see extract_sections. Returns each arc's kept vertices.
-std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px);
+/// @param longest_px edges of several vertices are no longer than about this; 0: no limit
+std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px, double longest_px = 0);
 
 /// The same for arcs whose vertices lie anywhere; tolerance in grid units. Only crossings are looked after.
 std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance);

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "contour/arcs.h"
 #include "contour/components.h"
-#include "contour/slices.h"
+#include "model/slices.h"
 
 namespace stackmesh {
 namespace {
@@ -23,8 +23,8 @@ std::vector<Label> labels_in(const Slice& slice, const LabelVolume& volume) {
   return out;
 }
 
-Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double z_mm) {
-  const std::vector<std::vector<GridPoint>> kept = simplify_arcs(traced.arcs, simplify_px);
+Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px, double z_mm) {
+  const std::vector<std::vector<GridPoint>> kept = simplify_arcs(traced.arcs, simplify_px, longest_px);
   Section section;
   section.z_mm = z_mm;
   std::unordered_map<std::uint64_t, std::int32_t> ids;
@@ -54,7 +54,7 @@ int stacking_axis(const LabelVolume& volume, StackAxis axis) {
   return best;
 }
 
-ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress) {
+ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress, const FairedLabels* faired) {
   ContourResult result;
   result.axis = stacking_axis(volume, options.axis);
   const StackAxes axes = axes_for(result.axis);
@@ -86,14 +86,15 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
     rules.same_component = [&](int xa, int ya, int xb, int yb) {
       return components.of(xa, ya, k) == components.of(xb, yb, k);
     };
-    if (options.simplify_px > 0) {
+    if (faired != nullptr) rules.faired = &faired->slices[k];
+    if (options.simplify_px > 0 || faired != nullptr) {
       rules.part = true;
       if (below != nullptr) touching_corners(components, slice, k, *below, k - 1, rules.keep);
       if (above != nullptr) touching_corners(components, slice, k, *above, k + 1, rules.keep);
       std::sort(rules.keep.begin(), rules.keep.end());
     }
     const SliceArcs traced = trace_arcs(slice, rules);
-    stack.sections[k] = make_section(traced, volume, options.simplify_px, k * volume.spacing_mm[axes.w]);
+    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, k * volume.spacing_mm[axes.w]);
     stack.sections[k].interpolated = k % period != 0;
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "model/faired_labels.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
 
@@ -15,6 +16,7 @@ struct ContourOptions {
   StackAxis axis =
       StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
   double simplify_px = 0.5;  ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
+  double longest_px = 4;     ///< about the longest edge that simplification makes of faired contours, in pixels
   int virtual_per_gap = 0;    ///< slices of the volume that are interpolated between each two real ones
   int threads = 0;           ///< 0: all
 };
@@ -31,8 +33,10 @@ struct ContourResult {
 /// (cv::findContours [Suzuki and Abe 1985] on the doubled mask, docs/contours.md), simplified by
 /// cv::approxPolyDP [Douglas and Peucker 1973] so that every pixel centre keeps its label and no contours
 /// cross. With simplify_px == 0 each label's area in a section is its pixel count, exactly.
+/// @param faired where the corners of the contours lie; null: at the corners of the pixels
 /// @throws Error(input) for fewer than two slices along the axis or no label at all.
-ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress);
+ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress,
+                               const FairedLabels* faired = nullptr);
 
 /// The axis that `automatic` stands for: 0, 1 or 2.
 int stacking_axis(const LabelVolume& volume, StackAxis axis);

@@ -22,8 +22,9 @@ struct Chord {
 class ArcSimplifier {
  public:
   /// @param centres pixel centres keep their labels: vertices lie on pixel corners
-  ArcSimplifier(const std::vector<Arc>& arcs, double tolerance_px, bool centres)
-      : arcs_(arcs), tolerance_(tolerance_px), centres_(centres) {}
+  /// @param longest_px of a chord; 0: no limit
+  ArcSimplifier(const std::vector<Arc>& arcs, double tolerance_px, bool centres, double longest_px)
+      : arcs_(arcs), tolerance_(tolerance_px), centres_(centres), longest_(longest_px * kGridPerPixel) {}
 
   std::vector<std::vector<GridPoint>> run() {
     for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -88,13 +89,38 @@ class ArcSimplifier {
       while (j < to && curve[j - from] != kept[k]) ++j;
       if (k + 1 == kept.size()) j = to;
       if (!centres_ || keeps_centres(chain, i, j))
-        out.push_back({arc, i, j, tolerance});
+        add_pieces({arc, i, j, tolerance}, out);
       else
         add(arc, i, j, tolerance / 2, out);
       i = j;
       if (i == to) break;
     }
     if (i != to) add(arc, i, to, tolerance / 2, out);
+  }
+
+  /// A chord, halved at its chain's vertices until no piece is too long: between far vertices a strip of the stitched surface
+  /// would hang on its ends alone.
+  void add_pieces(const Chord& c, std::vector<Chord>& out) const {
+    const std::vector<CrackVertex>& chain = arcs_[c.arc].chain;
+    const GridPoint p = chain[c.from].position, q = chain[c.to].position;
+    if (longest_ <= 0 || c.to - c.from == 1 || std::hypot(q.x - p.x, q.y - p.y) <= longest_) {
+      out.push_back(c);
+      return;
+    }
+    std::int32_t middle = c.from + 1;  // the vertex that is the most evenly between the ends
+    double best = -1;
+    for (std::int32_t i = c.from + 1; i < c.to; ++i) {
+      const GridPoint m = chain[i].position;
+      const double uneven = std::abs(std::hypot(m.x - p.x, m.y - p.y) - std::hypot(q.x - m.x, q.y - m.y));
+      if (best < 0 || uneven < best) {
+        best = uneven;
+        middle = i;
+      }
+    }
+    for (const Chord& half : {Chord{c.arc, c.from, middle, c.tolerance_px}, Chord{c.arc, middle, c.to, c.tolerance_px}}) {
+      if (!centres_ || keeps_centres(chain, half.from, half.to)) add_pieces(half, out);
+      else add(c.arc, half.from, half.to, c.tolerance_px / 2, out);
+    }
   }
 
   /// Every row of pixel centres must see the chord between the same two centres as the cracks it replaces.
@@ -165,6 +191,7 @@ class ArcSimplifier {
   const std::vector<Arc>& arcs_;
   const double tolerance_;
   const bool centres_;
+  const double longest_;  // in grid units
   std::vector<Chord> chords_;
 };
 
@@ -177,13 +204,13 @@ std::vector<std::vector<GridPoint>> all_vertices(const std::vector<Arc>& arcs) {
 
 }  // namespace
 
-std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px) {
-  if (tolerance_px > 0) return ArcSimplifier(arcs, tolerance_px, true).run();
+std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px, double longest_px) {
+  if (tolerance_px > 0) return ArcSimplifier(arcs, tolerance_px, true, longest_px).run();
   return all_vertices(arcs);
 }
 
 std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance) {
-  if (tolerance > 0) return ArcSimplifier(arcs, tolerance / kGridPerPixel, false).run();
+  if (tolerance > 0) return ArcSimplifier(arcs, tolerance / kGridPerPixel, false, 0).run();
   return all_vertices(arcs);
 }
 

@@ -2,14 +2,17 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 #include "base/error.h"
 #include "contour/arcs.h"
 #include "contour/components.h"
-#include "contour/slices.h"
+#include "model/corner_rule.h"
+#include "model/slices.h"
 
 namespace stackmesh {
 namespace {
@@ -147,11 +150,16 @@ class SliceTracer {
     if (cracks == 3) return Corner::junction;
     const std::uint16_t sw = slice_.at(x - 1, y - 1), se = slice_.at(x, y - 1);
     const std::uint16_t nw = slice_.at(x - 1, y), ne = slice_.at(x, y);
-    const bool rising = sw == ne, falling = nw == se;
-    if (rising && sw == 0) return Corner::join_rising;
-    if (falling && nw == 0) return Corner::join_falling;
-    if (rising && rules_.same_component(x - 1, y - 1, x, y)) return Corner::join_rising;
-    if (falling && rules_.same_component(x - 1, y, x, y - 1)) return Corner::join_falling;
+    switch (joined_diagonal(sw, se, nw, ne, [&](int falling) {
+      return falling ? rules_.same_component(x - 1, y, x, y - 1) : rules_.same_component(x - 1, y - 1, x, y);
+    })) {
+      case JoinedDiagonal::rising:
+        return Corner::join_rising;
+      case JoinedDiagonal::falling:
+        return Corner::join_falling;
+      case JoinedDiagonal::none:
+        break;
+    }
     return Corner::junction;
   }
 
@@ -210,18 +218,36 @@ class SliceTracer {
     return kind == Corner::join_rising ? rising[dir] : falling[dir];
   }
 
-  /// Moves a corner that two contours pass a quarter pixel into the pixel that this contour turns about, so
-  /// that the joined label grows there: not where it would meet another of its components in the next slice.
-  static void draw_apart(CrackVertex& v, int arrived, int leaves) {
+  /// Draws a corner that two contours pass on the side of the pixel that this contour turns about, so that the joined label
+  /// grows there: not where it would meet another of its components in the next slice.
+  void draw_apart(CrackVertex& v, int arrived, int leaves) const {
     // The pixel lies between the crack it came by (opposite `arrived`) and the crack it leaves by.
-    const int quarter = kGridPerPixel / 4;
-    v.position.x += quarter * (kStepX[leaves] - kStepX[arrived]);
-    v.position.y += quarter * (kStepY[leaves] - kStepY[arrived]);
+    const int to_x = kStepX[leaves] - kStepX[arrived], to_y = kStepY[leaves] - kStepY[arrived];
+    if (const FairedLabels::Corner* c = v.keep ? nullptr : faired(v.x, v.y, to_y < 0 ? FairedLabels::Corner::south : FairedLabels::Corner::north)) {
+      v.position = displaced(*c);
+    } else {
+      const int quarter = kGridPerPixel / 4;
+      v.position = {v.x * kGridPerPixel + quarter * to_x, v.y * kGridPerPixel + quarter * to_y};
+    }
+  }
+
+  const FairedLabels::Corner* faired(int x, int y, FairedLabels::Corner::Part part) const {
+    if (rules_.faired == nullptr) return nullptr;
+    const auto it = std::lower_bound(rules_.faired->begin(), rules_.faired->end(), std::make_tuple(y, x, part),
+                                     [](const FairedLabels::Corner& c, const auto& key) { return std::make_tuple(c.y, c.x, c.part) < key; });
+    return it != rules_.faired->end() && it->x == x && it->y == y && it->part == part ? &*it : nullptr;
+  }
+
+  static GridPoint displaced(const FairedLabels::Corner& c) {
+    return {c.x * kGridPerPixel + static_cast<std::int32_t>(std::lround(c.dx * kGridPerPixel)),
+            c.y * kGridPerPixel + static_cast<std::int32_t>(std::lround(c.dy * kGridPerPixel))};
   }
 
   CrackVertex vertex(int x, int y) const {
     const bool keep =
         !rules_.keep.empty() && std::binary_search(rules_.keep.begin(), rules_.keep.end(), corner_key(x, y));
+    if (!keep)
+      if (const FairedLabels::Corner* c = faired(x, y, FairedLabels::Corner::whole)) return {x, y, displaced(*c), false};
     return {x, y, {x * kGridPerPixel, y * kGridPerPixel}, keep};
   }
 

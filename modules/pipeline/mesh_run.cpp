@@ -12,13 +12,13 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "interpolate/virtual_slices.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
 #include "report/html_report.h"
 #include "pipeline/virtual_sections.h"
+#include "pipeline/volume_sections.h"
 #include "volume/raise_order.h"
 
 namespace stackmesh {
@@ -116,14 +116,14 @@ class MeshRun {
   bool wants_fidelity() const { return !o_.reports.empty() || o_.strict; }
 
   void make_sections() {
-    check_stack_axis(input_, o_.contours.axis);
+    check_stack_axis(input_, o_.sections.contours.axis);
     if (input_.sections) {
       stack_ = std::move(*input_.sections);
       for (const Section& s : stack_.sections) report_.contours.vertices_traced += s.points.size();
-      add_virtual_sections(stack_, o_.virtual_sections, o_.threads);
+      add_virtual_sections(stack_, o_.sections.virtual_sections, o_.threads);
       for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
     } else {
-      ContourResult c = extract_with_virtual_sections();
+      ContourResult c = volume_sections(*input_.volume, o_.sections, progress_);
       stack_ = std::move(c.stack);
       axis_ = c.axis;
       report_.contours.loops = c.loops;
@@ -133,21 +133,6 @@ class MeshRun {
     }
     report_.input.axis = std::string(1, "xyz"[axis_]);
     for (const Section& s : stack_.sections) report_.input.sections += s.interpolated ? 0 : 1;
-  }
-
-  ContourResult extract_with_virtual_sections() {
-    const LabelVolume& volume = *input_.volume;
-    const int axis = stacking_axis(volume, o_.contours.axis);
-    InterpolateOptions options;
-    options.per_gap = o_.virtual_sections;
-    options.threads = o_.threads;
-    const int per_gap = virtual_slices_per_gap(volume, axis, options);
-    if (per_gap == 0) return extract_sections(volume, o_.contours, progress_);
-    const InterpolatedVolume dense = add_virtual_slices(volume, axis, options);
-    ContourOptions contours = o_.contours;
-    contours.axis = std::array{StackAxis::x, StackAxis::y, StackAxis::z}[axis];  // the dense volume's spacing would choose anew
-    contours.virtual_per_gap = dense.per_gap;
-    return extract_sections(dense.volume, contours, progress_);
   }
 
   void stitch() {

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "contour/extract.h"
 #include "base/atomic_file.h"
 #include "enhance/enhance.h"
 #include "fem/name_sets.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
+#include "pipeline/volume_sections.h"
 #include "report/run_report.h"
 #include "stitch/stitch.h"
 #include "volume/fill_volume.h"
@@ -25,8 +25,7 @@ enum class Target { surface, volume };
 struct MeshRunOptions {
   Target target = Target::volume;
   InputOptions input;
-  ContourOptions contours;
-  std::optional<int> virtual_sections;            ///< per gap of a label volume; unset: as many as make it about a pixel
+  SectionOptions sections;
   StitchOptions stitch;                           ///< label_caps are given by name or number in label_caps_text
   std::vector<std::pair<std::string, Caps>> label_caps_text;
   bool enhance = false;                           ///< smooth and remesh the stitched surface

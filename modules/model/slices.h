@@ -3,10 +3,18 @@
 #include <cstring>
 #include <vector>
 
-#include "contour/arcs.h"
 #include "model/label_volume.h"
 
 namespace stackmesh {
+
+/// A slice of palette indices, rows along y.
+struct Slice {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> pixels;
+  std::uint16_t at(int x, int y) const {
+    return x < 0 || y < 0 || x >= width || y >= height ? 0 : pixels[static_cast<std::size_t>(y) * width + x];
+  }
+};
 
 /// The volume's axes as the stack has them: in-plane x, in-plane y, stacking axis; always a cyclic
 /// permutation.

@@ -1,4 +1,4 @@
-#include "contour/slices.h"
+#include "model/slices.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "model/geometry.h"
+
+namespace stackmesh {
+
+/// Where the interfaces of a label volume run between its voxel centres, as fairing found them: what contours and sheets
+/// follow instead of the faces of the voxels. Axes are those of the stack (in-plane x, y; slices along z).
+struct FairedLabels {
+  /// A contour's vertex: the pixel corner that it stands for, and how far it lies from there, in pixels.
+  struct Corner {
+    enum Part : std::uint8_t { whole, south, north };
+    std::int32_t x, y;
+    Part part;  ///< of two contours that pass one corner, the one around the pixel with the smaller y is the southern one
+    float dx, dy;
+  };
+  std::vector<std::vector<Corner>> slices;  ///< of each slice, ascending (y, x, part); corners that are absent stay where they are
+};
+
+}  // namespace stackmesh
