@@ -34,7 +34,7 @@ void run(const ContoursArguments& a) {
   const SectionOptions options = a.contours.options();
   Input input = read_input(a.input.options());
   check_stack_axis(input, options.contours.axis);
-  Stack stack = input.sections ? std::move(*input.sections) : volume_sections(*input.volume, options, *progress).stack;
+  Stack stack = input.sections ? std::move(*input.sections) : volume_sections(*input.volume, options, *progress).contours.stack;
   stack.sections.erase(std::remove_if(stack.sections.begin(), stack.sections.end(), [](const Section& s) { return s.interpolated; }), stack.sections.end());
   AtomicFiles files;
   write_sections(files, a.output, stack);

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
 #include "enhance/separate.h"
@@ -60,7 +62,12 @@ class Enhancement {
     result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm), o_.threads);
     wall_reach_ = std::max(2 * o_.pixel_mm, o_.edge_length_mm.value_or(6 * o_.pixel_mm));
     wall_ = wall_thickness(mesh, wall_reach_, o_.threads);
-    if (o_.smooth_passes > 0) smooth_mesh(mesh);
+    if (o_.faired != nullptr) {
+      faired_ = ComplexMesh(*o_.faired, 1e300, o_.threads);
+      settle(mesh);
+    } else if (o_.smooth_passes > 0) {
+      smooth_mesh(mesh);
+    }
     progress_.advance(0.25);
     const std::vector<Vec3> smoothed = mesh.points;  // smoothing only moves points
     if (o_.remesh) {
@@ -72,7 +79,7 @@ class Enhancement {
         return std::move(result_);
       }
     }
-    if (o_.smooth_passes > 0) {
+    if (o_.smooth_passes > 0 || o_.faired != nullptr) {
       InterfaceComplex moved = stitched_;
       moved.points = smoothed;
       if (stands("smoothed", ComplexMesh(moved, 0, o_.threads))) result_.complex = std::move(moved);
@@ -143,11 +150,42 @@ class Enhancement {
     result_.counts.held_back = r.held_back;
   }
 
+  double reference_cell_mm() const { return 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)); }
+
+  /// Draws the stitched vertices to the faired interfaces.
+  void settle(ComplexMesh& mesh) {
+    const Reference reference(mesh, reference_cell_mm(), o_.threads, &*faired_);
+    const double reach = std::max(o_.pixel_mm, o_.gap_mm);
+    std::vector<Vec3> to = mesh.points;
+    const std::vector<double> bends = surface_bends(*faired_, o_.threads);
+    bend_.assign(to.size(), -1);
+    for_each_index(to.size(), o_.threads, [&](std::size_t n) {
+      const auto v = static_cast<std::int32_t>(n);
+      if (mesh.star[v].empty() || mesh.is_fixed(v) || mesh.flat[v]) return;
+      if (!mesh.curve[v].empty()) {
+        if (const auto foot = reference.nearest_on_curve(to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), reach)) to[v] = *foot;
+      } else if (const auto foot = reference.nearest(to[v], mesh.triangles[mesh.star[v][0]].patch, reach, -1, 0)) {
+        to[v] = foot->point;
+        if (reference.is_faired(foot->face)) {
+          bend_[v] = 0;
+          for (std::int32_t w : faired_->triangles[foot->triangle].v) bend_[v] += bends[w] / 3;
+        }
+      }
+    });
+    MoveLimits keep;
+    keep.clearance_mm = 0.02 * std::min(o_.pixel_mm, o_.gap_mm);
+    keep.sheet_angle_deg = o_.sheet_angle_deg;
+    const SmoothingResult r = move_guarded(mesh, to, keep, o_.threads);
+    result_.counts.smoothed = r.moved;
+    result_.counts.held_back = r.held_back;
+  }
+
   SizingOptions sizing(const ComplexMesh& mesh) {
     SizingOptions s;
     s.threads = o_.threads;
     s.shell_mm = shell_;
     s.wall_mm = wall_;
+    s.bend = bend_;
     s.wall_reach_mm = wall_reach_;
     s.gradation = o_.gradation;
     s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(0.5 * o_.pixel_mm);
@@ -255,12 +293,14 @@ class Enhancement {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
     RemeshOptions r;
+    if (std::getenv("DBG")) { auto q=[&](const char*n, std::vector<double> x){ std::sort(x.begin(),x.end()); std::fprintf(stderr,"%s p1 %.2f p5 %.2f p20 %.2f p50 %.2f\n",n,x[x.size()/100],x[x.size()/20],x[x.size()/5],x[x.size()/2]); }; q("size",size); q("wall",wall_); q("shell",shell_); auto b=bend_; q("bend",b); }
     if (o_.target_tets && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
     result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size).at(1));
     refuse_giants(triangles);
-    const Reference reference(mesh, 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)), o_.threads);
+    const Reference reference(mesh, reference_cell_mm(), o_.threads, faired_ ? &*faired_ : nullptr);
+    faired_.reset();
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
     // An edge length that was asked for gives way only where something would be cut off.
@@ -338,9 +378,11 @@ class Enhancement {
   EnhanceResult result_;
   std::map<Label, double> volumes_;  // to be kept
   std::vector<double> shell_;        // of each vertex of the stitched complex: size of its smallest closed shell
+  std::vector<double> bend_;         // how much the faired interfaces bend there
   std::vector<double> wall_;         // and how thick its walls are there, up to the reach
   double wall_reach_ = 0;
   std::map<Label, ShellCount> shells_;  // of each label
+  std::optional<ComplexMesh> faired_;   // where the interfaces run, until the reference is made
   SurfaceSamples samples_;  // of the stitched surface
 };
 

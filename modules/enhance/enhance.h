@@ -12,6 +12,8 @@ namespace stackmesh {
 struct EnhanceOptions {
   int smooth_passes = 5;  ///< HC-Laplacian, up to 5; each above is one more of a low-pass on the remeshed surface, which by default
                           ///< has three where they cost little distance, else a light one; 0: no smoothing at all
+  const InterfaceComplex* faired = nullptr;  ///< where the interfaces really run (FairedLabels::surface), in the same coordinates: the surface is
+                                             ///< drawn to it instead of being smoothed; null: the stitched surface is smoothed
   double pixel_mm = 1;    ///< in-plane pixel of the sections
   double gap_mm = 1;      ///< between sections; with the pixel it limits how far smoothing moves a vertex
   bool remesh = true;     ///< false: smoothing only

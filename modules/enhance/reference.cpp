@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <numeric>
+#include <unordered_set>
 
 #include "base/parallel.h"
 #include "enhance/contact.h"
@@ -59,20 +61,24 @@ void Reference::Cells::around(const Vec3& p, double r, Visit visit) const {
       }
 }
 
-std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b) {
+std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, const std::vector<std::int32_t>* patch_of) {
   std::vector<std::int32_t> around;
   mesh.edge_triangles(a, b, around);
-  for (std::int32_t& t : around) t = mesh.triangles[t].patch;
+  for (std::int32_t& t : around) {
+    t = mesh.triangles[t].patch;
+    if (patch_of != nullptr) t = (*patch_of)[t];
+  }
   std::sort(around.begin(), around.end());
   std::uint64_t key = 1469598103934665603ull;
   for (std::int32_t patch : around) key = (key ^ static_cast<std::uint64_t>(patch + 1)) * 1099511628211ull;
   return key;
 }
 
-Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads) : cell_mm_(cell_mm) {
+void Reference::add_faces(const ComplexMesh& mesh, const std::vector<std::int32_t>& patch_of, int threads) {
+  const std::size_t before = faces_.size();
   std::vector<std::int32_t> number(mesh.triangles.size(), -1);
   for (std::size_t t = 0; t < number.size(); ++t)
-    if (mesh.triangles[t].patch >= 0) {
+    if (mesh.triangles[t].patch >= 0 && patch_of[mesh.triangles[t].patch] >= 0) {
       number[t] = static_cast<std::int32_t>(faces_.size());
       Face f;
       f.triangle = static_cast<std::int32_t>(t);
@@ -80,10 +86,11 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads) : cel
     }
   normals_.resize(faces_.size());
   balls_.resize(faces_.size());
-  for_each_index(faces_.size(), threads, [&](std::size_t n) {
+  for_each_index(faces_.size() - before, threads, [&](std::size_t i) {
+    const std::size_t n = before + i;
     Face& f = faces_[n];
     const MeshTriangle& t = mesh.triangles[f.triangle];
-    f.patch = t.patch;
+    f.patch = patch_of[t.patch];
     const Vec3 area = mesh.area_vector(t.v);
     const double size = norm(area);
     for (int k = 0; k < 3; ++k) {
@@ -106,11 +113,40 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads) : cel
     const Vec3 c = (1 / 3.0) * (f.p[0] + f.p[1] + f.p[2]);
     const double r = std::max({norm(f.p[0] - c), norm(f.p[1] - c), norm(f.p[2] - c)});
     balls_[n] = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
-                 static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))), t.patch};
+                 static_cast<float>(1.001 * r + 1e-6 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z))), f.patch};
   });
+}
+
+Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads, const ComplexMesh* faired)
+    : cell_mm_(cell_mm), is_the_mesh_(faired == nullptr) {
+  std::vector<std::int32_t> own(2 * mesh.pair_count());  // patches of the mesh that it stands for itself
+  std::iota(own.begin(), own.end(), 0);
+  std::unordered_set<std::uint64_t> known;
+  if (faired != nullptr) {
+    std::vector<std::int32_t> as_in_mesh(2 * faired->pair_count(), -1);
+    for (std::size_t patch = 0; patch < as_in_mesh.size(); ++patch)
+      for (std::size_t k = 0; k < mesh.pair_count(); ++k)
+        if (mesh.labels_of(static_cast<std::int32_t>(2 * k)) == faired->labels_of(static_cast<std::int32_t>(patch))) {
+          as_in_mesh[patch] = static_cast<std::int32_t>(2 * k);
+          own[2 * k] = -1;
+        }
+    add_faces(*faired, as_in_mesh, threads);
+    faired_faces_ = faces_.size();
+    std::vector<std::int32_t> around;
+    for (std::int32_t a = 0; a < static_cast<std::int32_t>(faired->points.size()); ++a)
+      for (std::int32_t b : faired->curve[a]) {
+        if (a > b) continue;
+        faired->edge_triangles(a, b, around);
+        if (around.size() < 3) continue;  // where the image ends
+        segments_.push_back({faired->points[a], faired->points[b], curve_key(*faired, a, b, &as_in_mesh)});
+        known.insert(segments_.back().key);
+      }
+  }
+  add_faces(mesh, own, threads);
   for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
     for (std::int32_t b : mesh.curve[a])
-      if (a < b) segments_.push_back({mesh.points[a], mesh.points[b], curve_key(mesh, a, b)});
+      if (a < b)
+        if (const std::uint64_t key = curve_key(mesh, a, b); known.count(key) == 0) segments_.push_back({mesh.points[a], mesh.points[b], key});
   face_cells_.build(faces_.size(), cell_mm, threads, [&](std::size_t n) { return faces_[n].p; });
   segment_cells_.build(segments_.size(), cell_mm, threads, [&](std::size_t n) {
     return std::array<Vec3, 2>{segments_[n].a, segments_[n].b};

@@ -15,7 +15,12 @@ namespace stackmesh {
 /// smooth to the eye and nearly G1.
 class Reference {
  public:
-  Reference(const ComplexMesh& mesh, double cell_mm, int threads);
+  /// @param faired where the sheets and the curves between three labels run, if that is known better than by `mesh`; caps, ridges and
+  /// interfaces that it lacks are the mesh's own
+  Reference(const ComplexMesh& mesh, double cell_mm, int threads, const ComplexMesh* faired = nullptr);
+  /// True when its faces are the triangles of the mesh, in their order.
+  bool is_the_mesh() const { return is_the_mesh_; }
+  bool is_faired(std::int32_t face) const { return static_cast<std::size_t>(face) < faired_faces_; }
 
   struct Foot {
     Vec3 point, normal;
@@ -31,7 +36,7 @@ class Reference {
   std::optional<Vec3> nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const;
 
   /// What tells curves apart: the patches that meet there.
-  static std::uint64_t curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b);
+  static std::uint64_t curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, const std::vector<std::int32_t>* patch_of = nullptr);
 
   /// Centres of its triangles, with their patches.
   std::size_t face_count() const { return faces_.size(); }
@@ -77,7 +82,12 @@ class Reference {
   void walk(const Vec3& p, std::int32_t hint, Candidate& best) const;
   Foot foot_at(const Candidate& c) const;
 
+  /// Adds the triangles of a mesh, with the patches that `patch_of` gives them; -1: left out.
+  void add_faces(const ComplexMesh& mesh, const std::vector<std::int32_t>& patch_of, int threads);
+
   double cell_mm_;
+  bool is_the_mesh_ = true;
+  std::size_t faired_faces_ = 0;
   std::vector<Face> faces_;
   std::vector<std::array<std::array<float, 3>, 3>> normals_;  ///< of each face's corners
   std::vector<Ball> balls_;

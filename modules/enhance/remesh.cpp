@@ -422,7 +422,8 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
   // The mesh still is the reference, whose faces are numbered as the triangles that are alive.
   std::vector<std::int32_t> hints(mesh.points.size(), -1);
   mesh.compact(size, hints);
-  for (std::size_t v = 0; v < hints.size(); ++v) hints[v] = mesh.star[v].front();
+  if (reference.is_the_mesh())
+    for (std::size_t v = 0; v < hints.size(); ++v) hints[v] = mesh.star[v].front();
   // Blocks are worked on at the same time; each phase has their sides elsewhere, so that what was frozen has its turn.
   int phase = 0;
   const auto in_blocks = [&](bool whole, auto work) {

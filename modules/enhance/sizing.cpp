@@ -61,62 +61,24 @@ class Sizing {
     });
   }
 
-  /// From normals averaged over a few rings, so that what is left of the voxels' steps does not count as
-  /// curvature.
   void curvature() {
-    const std::size_t n = mesh_.points.size();
-    std::vector<Vec3> normal(n), next(n);
-    std::vector<double> bend(n, 0), smooth(n, 0);
-    for_each_index(n, o_.threads, [&](std::int32_t v) {
-      Vec3 sum;
-      if (mesh_.curve[v].empty())
-        for (std::int32_t t : mesh_.star[v]) sum = sum + mesh_.area_vector(mesh_.triangles[t].v);
-      normal[v] = unit(sum);
-    });
-    const auto averaged = [&](auto& from, auto& to, auto share) {
-      for_each_index(n, o_.threads, [&](std::int32_t v) {
-        to[v] = from[v];
-        if (!mesh_.curve[v].empty()) return;
-        for (std::int32_t t : mesh_.star[v])
-          for (std::int32_t w : mesh_.triangles[t].v)
-            if (w != v && mesh_.curve[w].empty()) to[v] = to[v] + share * from[w];
-      });
-      std::swap(from, to);
-    };
-    for (int pass = 0; pass < 3; ++pass) {
-      averaged(normal, next, 0.5);
-      for_each_index(n, o_.threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
-    }
-    for_each_index(n, o_.threads, [&](std::int32_t v) {
-      if (!mesh_.curve[v].empty()) {
-        if (mesh_.curve[v].size() != 2) return;
-        const Vec3 a = mesh_.points[mesh_.curve[v][0]] - mesh_.points[v],
-                   b = mesh_.points[v] - mesh_.points[mesh_.curve[v][1]];
-        const double l = 0.5 * (norm(a) + norm(b));
-        if (l > 0) bend[v] = 0.5 * norm(unit(a) - unit(b)) / l;  // half: a curve keeps some of its steps
+    bend_ = surface_bends(mesh_, o_.threads);
+    for_each_index(o_.bend.size(), o_.threads, [&](std::size_t v) {
+      if (o_.bend[v] >= 0) {
+        bend_[v] = o_.bend[v];
         return;
       }
-      for (std::int32_t t : mesh_.star[v])
-        for (std::int32_t w : mesh_.triangles[t].v) {
-          if (w == v || !mesh_.curve[w].empty()) continue;
-          const Vec3 d = mesh_.points[w] - mesh_.points[v];
-          const double l = dot(d, d);
-          if (l > 0) bend[v] = std::max(bend[v], std::abs(dot(normal[w] - normal[v], d)) / l);
-        }
-    });
-    for_each_index(n, o_.threads, [&](std::int32_t v) {  // mean over the neighbours: one odd edge does not decide
-      double sum = bend[v], count = 1;
+      double sum = 0, count = 0;  // a curve bends as the sheets beside it
       for (std::int32_t t : mesh_.star[v])
         for (std::int32_t w : mesh_.triangles[t].v)
-          if (w != v) {
-            sum += 0.5 * bend[w];
-            count += 0.5;
+          if (o_.bend[w] >= 0) {
+            sum += o_.bend[w];
+            ++count;
           }
-      smooth[v] = sum / count;
+      if (count > 0) bend_[v] = sum / count;
     });
-    bend_ = std::move(smooth);
     if (o_.edge_length_mm) return;
-    for_each_index(n, o_.threads, [&](std::int32_t v) {
+    for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       if (!fixed_[v])
         size_[v] = std::clamp(chord(v, o_.deviation_mm), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
@@ -309,6 +271,60 @@ void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>&
       return true;
     });
   }
+}
+
+std::vector<double> surface_bends(const ComplexMesh& mesh, int threads) {
+  const std::size_t n = mesh.points.size();
+  std::vector<Vec3> normal(n), next(n);
+  std::vector<double> bend(n, 0), smooth(n, 0);
+  for_each_index(n, threads, [&](std::int32_t v) {
+    Vec3 sum;
+    if (mesh.curve[v].empty())
+      for (std::int32_t t : mesh.star[v]) sum = sum + mesh.area_vector(mesh.triangles[t].v);
+    normal[v] = unit(sum);
+  });
+  const auto averaged = [&](auto& from, auto& to, auto share) {
+    for_each_index(n, threads, [&](std::int32_t v) {
+      to[v] = from[v];
+      if (!mesh.curve[v].empty()) return;
+      for (std::int32_t t : mesh.star[v])
+        for (std::int32_t w : mesh.triangles[t].v)
+          if (w != v && mesh.curve[w].empty()) to[v] = to[v] + share * from[w];
+    });
+    std::swap(from, to);
+  };
+  for (int pass = 0; pass < 3; ++pass) {
+    averaged(normal, next, 0.5);
+    for_each_index(n, threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
+  }
+  for_each_index(n, threads, [&](std::int32_t v) {
+    if (!mesh.curve[v].empty()) {
+      if (mesh.curve[v].size() != 2) return;
+      const Vec3 a = mesh.points[mesh.curve[v][0]] - mesh.points[v],
+                 b = mesh.points[v] - mesh.points[mesh.curve[v][1]];
+      const double l = 0.5 * (norm(a) + norm(b));
+      if (l > 0) bend[v] = 0.5 * norm(unit(a) - unit(b)) / l;  // half: a curve keeps some of its steps
+      return;
+    }
+    for (std::int32_t t : mesh.star[v])
+      for (std::int32_t w : mesh.triangles[t].v) {
+        if (w == v || !mesh.curve[w].empty()) continue;
+        const Vec3 d = mesh.points[w] - mesh.points[v];
+        const double l = dot(d, d);
+        if (l > 0) bend[v] = std::max(bend[v], std::abs(dot(normal[w] - normal[v], d)) / l);
+      }
+  });
+  for_each_index(n, threads, [&](std::int32_t v) {  // mean over the neighbours: one odd edge does not decide
+    double sum = bend[v], count = 1;
+    for (std::int32_t t : mesh.star[v])
+      for (std::int32_t w : mesh.triangles[t].v)
+        if (w != v) {
+          sum += 0.5 * bend[w];
+          count += 0.5;
+        }
+    smooth[v] = sum / count;
+  });
+  return smooth;
 }
 
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options) {

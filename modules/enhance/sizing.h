@@ -17,8 +17,13 @@ struct SizingOptions {
   std::vector<double> shell_mm;  ///< what `shell_sizes` says of the vertices
   std::vector<double> wall_mm;   ///< what `wall_thickness` says, up to wall_reach_mm
   double wall_reach_mm = 0;
+  std::vector<double> bend;      ///< of each vertex that is on no curve, 1 / mm, where it is known better than by surface_bends; else below 0; may be empty
   int threads = 0;
 };
+
+/// How much the surface bends at every vertex, 1 / mm: one over the smallest radius of curvature, from normals averaged over a few
+/// rings, so that what is left of the voxels' steps does not count.
+std::vector<double> surface_bends(const ComplexMesh& mesh, int threads);
 
 /// For every vertex the distance across the thinnest label or gap between sheets of a label there, by rays
 /// from both sides; no more than reach_mm, infinite where nothing is hit.

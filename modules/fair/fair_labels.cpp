@@ -1,6 +1,7 @@
 #include "fair/fair_labels.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/parallel.h"
 #include "fair/cell_sheets.h"
@@ -57,6 +58,28 @@ std::vector<FairedLabels::Corner> cut_at(const Net& net, int z) {
   return out;
 }
 
+/// The quads of the net as triangles, each cut along its shorter diagonal.
+InterfaceComplex surface_of(const Net& net, const LabelVolume& volume, int threads) {
+  InterfaceComplex out;
+  out.points.resize(net.cell.size());
+  for_each_index(net.cell.size(), threads, [&](std::size_t v) {
+    const Cell& c = net.cell[v];
+    const Float3& w = net.way[v];
+    out.points[v] = {(c.x + static_cast<double>(w[0])) * net.spacing_mm[0], (c.y + static_cast<double>(w[1])) * net.spacing_mm[1],
+                     (c.z - 0.5 + static_cast<double>(w[2])) * net.spacing_mm[2]};
+  });
+  out.triangles.resize(2 * net.quads.size());
+  for_each_index(net.quads.size(), threads, [&](std::size_t i) {
+    const Net::Quad& q = net.quads[i];
+    const auto& k = q.corner;
+    const Label low = volume.labels[q.low].number, high = volume.labels[q.high].number;
+    const bool first = norm(out.points[k[0]] - out.points[k[2]]) <= norm(out.points[k[1]] - out.points[k[3]]);
+    out.triangles[2 * i] = first ? InterfaceTriangle{{k[0], k[1], k[2]}, low, high} : InterfaceTriangle{{k[1], k[2], k[3]}, low, high};
+    out.triangles[2 * i + 1] = first ? InterfaceTriangle{{k[0], k[2], k[3]}, low, high} : InterfaceTriangle{{k[1], k[3], k[0]}, low, high};
+  });
+  return out;
+}
+
 }  // namespace
 
 FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const FairOptions& options, Progress&) {
@@ -64,6 +87,7 @@ FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const Fai
   n.band_px = options.band_px;
   n.period = options.virtual_per_gap + 1;
   n.threads = options.threads;
+  if (const char* e = std::getenv("THIN")) n.thin_px = atof(e);
   Net net = build_net(volume, axes_for(stacking_axis), n);
   BendOptions bend;
   bend.threads = options.threads;
@@ -72,6 +96,7 @@ FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const Fai
   FairedLabels out;
   out.slices.resize(net.size[2]);
   parallel_for(out.slices.size(), options.threads, [&](std::size_t z) { out.slices[z] = cut_at(net, static_cast<int>(z)); });
+  if (options.surface) out.surface = surface_of(net, volume, options.threads);
   return out;
 }
 

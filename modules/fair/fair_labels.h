@@ -8,6 +8,7 @@ namespace stackmesh {
 struct FairOptions {
   double band_px = 0.5;      ///< how far a contour may leave the middle between pixel centres; at most 0.5: every voxel centre keeps its label
   int virtual_per_gap = 0;   ///< slices of the volume that are interpolated between each two real ones: the band does not hold there
+  bool surface = true;       ///< also the interfaces as a whole
   int threads = 0;           ///< 0: all
 };
 

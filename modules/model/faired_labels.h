@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/geometry.h"
+#include "model/complex.h"
 
 namespace stackmesh {
 
@@ -17,6 +17,7 @@ struct FairedLabels {
     float dx, dy;
   };
   std::vector<std::vector<Corner>> slices;  ///< of each slice, ascending (y, x, part); corners that are absent stay where they are
+  InterfaceComplex surface;  ///< the interfaces as a whole, in stack coordinates (mm); open at the image's border, and not free of intersections
 };
 
 }  // namespace stackmesh

@@ -123,7 +123,11 @@ class MeshRun {
       add_virtual_sections(stack_, o_.sections.virtual_sections, o_.threads);
       for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
     } else {
-      ContourResult c = volume_sections(*input_.volume, o_.sections, progress_);
+      SectionOptions options = o_.sections;
+      options.faired_surface = o_.enhance;
+      VolumeSections made = volume_sections(*input_.volume, options, progress_);
+      ContourResult& c = made.contours;
+      faired_ = std::move(made.faired);
       stack_ = std::move(c.stack);
       axis_ = c.axis;
       report_.contours.loops = c.loops;
@@ -204,6 +208,7 @@ class MeshRun {
     EnhanceOptions options = o_.enhancement;
     options.pixel_mm = pixel_mm_;
     options.gap_mm = gap_mm_;
+    if (!faired_.triangles.empty()) options.faired = &faired_;
     options.threads = o_.threads;
     options.label_edge_mm = label_sizes(o_.label_edges_text, "--edge-length");
     for (const LabelReport& row : report_.labels)
@@ -214,6 +219,7 @@ class MeshRun {
     clock_.run("enhance", [&] {
       try {
         result = enhance_complex(surface_, options, progress_);
+        faired_ = {};
       } catch (...) {
         error = std::current_exception();
       }
@@ -559,6 +565,7 @@ class MeshRun {
   Frame frame_;
   int axis_ = 2;
   double pixel_mm_ = 1, gap_mm_ = 1;
+  InterfaceComplex faired_;                   // stack coordinates; what enhancement draws the surface to
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   Judgement beside_;
   std::optional<FillResult> filled_;

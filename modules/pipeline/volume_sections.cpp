@@ -1,6 +1,7 @@
 #include "pipeline/volume_sections.h"
 
 #include <array>
+#include <utility>
 
 #include "fair/fair_labels.h"
 #include "interpolate/virtual_slices.h"
@@ -10,24 +11,25 @@ namespace {
 
 constexpr double kSimplifyFaired_px = 0.05, kSimplifyCracks_px = 0.5;
 
-ContourResult extract_faired(const LabelVolume& volume, int axis, int virtual_per_gap, const SectionOptions& options, Progress& progress) {
+VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_per_gap, const SectionOptions& options, Progress& progress) {
   ContourOptions contours = options.contours;
   contours.axis = std::array{StackAxis::x, StackAxis::y, StackAxis::z}[axis];  // the spacing of a dense volume would choose anew
   contours.virtual_per_gap = virtual_per_gap;
   const bool faired = options.band_px > 0;
   contours.simplify_px = options.simplify_px.value_or(faired ? kSimplifyFaired_px : kSimplifyCracks_px);
-  if (!faired) return extract_sections(volume, contours, progress);
+  if (!faired) return {extract_sections(volume, contours, progress), {}};
   FairOptions fairing;
   fairing.band_px = options.band_px;
   fairing.virtual_per_gap = virtual_per_gap;
   fairing.threads = contours.threads;
-  const FairedLabels places = fair_labels(volume, axis, fairing, progress);
-  return extract_sections(volume, contours, progress, &places);
+  fairing.surface = options.faired_surface;
+  FairedLabels places = fair_labels(volume, axis, fairing, progress);
+  return {extract_sections(volume, contours, progress, &places), std::move(places.surface)};
 }
 
 }  // namespace
 
-ContourResult volume_sections(const LabelVolume& volume, const SectionOptions& options, Progress& progress) {
+VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Progress& progress) {
   const int axis = stacking_axis(volume, options.contours.axis);
   InterpolateOptions between;
   between.per_gap = options.virtual_sections;

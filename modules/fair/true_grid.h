@@ -1,0 +1,22 @@
+#pragma once
+#include <array>
+#include <optional>
+
+#include "model/label_volume.h"
+
+namespace stackmesh {
+
+/// The grid on which labels were made, where they are stored on a finer one.
+struct TrueGrid {
+  std::array<double, 3> stored_per_voxel = {1, 1, 1};  ///< stored voxels along each axis of the volume in one voxel as made
+  LabelVolume volume;                                  ///< the labels on the grid on which they were made
+};
+
+/// Recognises labels that are stored finer than they were made: blocks of equal voxels at any phase, as networks for
+/// segmentation leave them when they work on a coarse grid, or nearest-neighbour resampling by any ratio. Each axis is
+/// looked at on its own: neighbouring planes differ only where a true voxel ends. Only clear cases count: at least six
+/// planes that differ, all of them at the ends of blocks, and most ends of blocks among them.
+/// @return nothing where the labels are as fine as they are stored.
+std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads);
+
+}  // namespace stackmesh
