@@ -34,6 +34,7 @@ void run(const ContoursArguments& a) {
   const SectionOptions options = a.contours.options();
   Input input = read_input(a.input.options());
   check_stack_axis(input, options.contours.axis);
+  if (input.volume && !options.as_stored && options.band_px > 0) reduce_to_true_grid(input, options.contours.threads);
   Stack stack = input.sections ? std::move(*input.sections) : volume_sections(*input.volume, options, *progress).contours.stack;
   stack.sections.erase(std::remove_if(stack.sections.begin(), stack.sections.end(), [](const Section& s) { return s.interpolated; }), stack.sections.end());
   AtomicFiles files;

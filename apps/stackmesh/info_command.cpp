@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "fair/true_grid.h"
 #include "options.h"
 
 namespace stackmesh::app {
@@ -11,13 +12,14 @@ using Json = nlohmann::ordered_json;
 
 Json colour_of(const LabelInfo& label) { return label.colour ? Json(*label.colour) : Json(nullptr); }
 
-Json describe(const Input& input) {
+Json describe(const Input& input, const std::array<double, 3>& made_mm) {
   Json j = {{"path", input.path}, {"kind", input.kind}};
   Json labels = Json::array();
   if (input.volume) {
     const LabelVolume& v = *input.volume;
     j["dimensions"] = v.size;
     j["spacing_mm"] = v.spacing_mm;
+    j["effective_spacing_mm"] = made_mm;
     j["origin_mm"] = {v.origin_mm.x, v.origin_mm.y, v.origin_mm.z};
     Json direction = Json::array();
     for (const Vec3& a : v.axes) direction.push_back({a.x, a.y, a.z});
@@ -49,12 +51,14 @@ Json describe(const Input& input) {
   return j;
 }
 
-void print(const Input& input) {
+void print(const Input& input, const std::array<double, 3>& made_mm) {
   std::printf("%s (%s)\n", input.path.c_str(), input.kind.c_str());
   if (input.volume) {
     const LabelVolume& v = *input.volume;
     std::printf("dimensions %d x %d x %d voxels, spacing %g x %g x %g mm, stacked along %c\n", v.size[0], v.size[1], v.size[2],
                 v.spacing_mm[0], v.spacing_mm[1], v.spacing_mm[2], "xyz"[stacking_axis(v, StackAxis::automatic)]);
+    if (made_mm != v.spacing_mm)
+      std::printf("made on    voxels of %.4g x %.4g x %.4g mm, stored finer\n", made_mm[0], made_mm[1], made_mm[2]);
     std::printf("origin     %g, %g, %g mm%s\n", v.origin_mm.x, v.origin_mm.y, v.origin_mm.z, v.anatomical ? " (LPS)" : " (no anatomy)");
     for (int a = 0; a < 3; ++a)
       std::printf("%s %8.5f %8.5f %8.5f\n", a == 0 ? "axes      " : "          ", v.axes[a].x, v.axes[a].y, v.axes[a].z);
@@ -79,12 +83,17 @@ void add_info_command(CLI::App& program) {
   input->add_to(*command, false);
   command->add_flag("--json", *json, "as JSON");
   command->callback([input, json] {
-    const Input read = read_input(input->options());
+    Input read = read_input(input->options());
+    std::array<double, 3> made_mm = {0, 0, 0};
+    if (read.volume) {
+      made_mm = read.volume->spacing_mm;
+      if (const auto grid = find_true_grid(*read.volume, 0)) made_mm = grid->volume.spacing_mm;
+    }
     if (*json) {
-      std::printf("%s\n", describe(read).dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+      std::printf("%s\n", describe(read, made_mm).dump(1, ' ', false, Json::error_handler_t::replace).c_str());
       return;
     }
-    print(read);
+    print(read, made_mm);
     print_warnings(read.warnings);
   });
 }

@@ -136,6 +136,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"axis", a.contours.axis},
                     {"simplify_px", a.contours.simplify_px >= 0 ? text_of(a.contours.simplify_px) : "default"},
                     {"band_px", text_of(o.sections.band_px)},
+                    {"as_stored", o.sections.as_stored ? "on" : "off"},
                     {"snap_mm", text_of(a.snap_mm)},
                     {"caps", a.caps},
                     {"interpolate", e.interpolate},

@@ -72,6 +72,7 @@ void ContourArguments::add_to(CLI::App& command) {
   command.add_option("--band", band_px, "how far a contour may leave the middle between pixel centres, in pixels: up to 0.5 every voxel centre keeps its label; more smooths "
       "labels that were drawn slice by slice; 0 keeps the pixels' own outlines")
       ->check(number_in(0, 3, "a number from 0 to 3"))->capture_default_str();
+  command.add_flag("--as-stored", as_stored, "take labels that are stored finer than they were made as they are stored");
   command.add_option("--threads", threads, "threads (default: all)")->check(CLI::Range(1, 1024));
 }
 
@@ -80,6 +81,7 @@ SectionOptions ContourArguments::options() const {
   ContourOptions& o = out.contours;
   if (simplify_px >= 0) out.simplify_px = simplify_px;
   out.band_px = band_px;
+  out.as_stored = as_stored;
   o.threads = threads;
   if (axis == "auto") o.axis = StackAxis::automatic;
   else if (axis == "x") o.axis = StackAxis::x;

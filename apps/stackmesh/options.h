@@ -27,6 +27,7 @@ struct ContourArguments {
   std::string axis = "auto";
   double simplify_px = -1;  // below 0: the default
   double band_px = 0.5;
+  bool as_stored = false;
   int threads = 0;
   void add_to(CLI::App& command);
   SectionOptions options() const;  ///< @throws Error(usage)

@@ -13,7 +13,7 @@ namespace {
 struct ValidateArguments {
   std::vector<std::string> meshes, reports, against;
   std::string spacing, labels, axis = "auto", space = "auto", array, limits, defects;
-  bool merge = false, write_defects = false;
+  bool as_stored = false, merge = false, write_defects = false;
   int threads = 0;
   TerminalArguments terminal;
 };
@@ -31,6 +31,7 @@ ValidateRunOptions to_options(const ValidateArguments& a) {
   ContourArguments contours;
   contours.axis = a.axis;
   o.axis = contours.options().contours.axis;
+  o.as_stored = a.as_stored;
   o.mesh_space = a.space;
   o.read.label_array = a.array;
   if (!a.limits.empty()) o.limits = read_limits(a.limits);
@@ -42,6 +43,7 @@ ValidateRunOptions to_options(const ValidateArguments& a) {
   o.option_texts = {{"label", a.labels.empty() ? "all" : a.labels},
                     {"merge", a.merge ? "on" : "off"},
                     {"axis", a.axis},
+                    {"as_stored", a.as_stored ? "on" : "off"},
                     {"mesh_space", a.space},
                     {"label_array", a.array.empty() ? "auto" : a.array},
                     {"limits", a.limits.empty() ? "default" : a.limits},
@@ -78,6 +80,7 @@ void add_validate_command(CLI::App& program) {
   command->add_option("--mesh-space,--space", a->space, "frame of the meshes: lps, ras, or auto: their own mark, else what overlaps best")->capture_default_str();
   command->add_option("--label-array", a->array, "cell array of the mesh that holds the labels");
   command->add_option("--spacing", a->spacing, "voxel size of PNG/TIFF slices, X,Y,Z in mm");
+  command->add_flag("--as-stored", a->as_stored, "take labels that are stored finer than they were made as they are stored");
   command->add_option("--axis", a->axis, "stacking axis: auto, x, y or z")->capture_default_str();
   command->add_flag("--write-defects", a->write_defects, "NAME.defects.vtp with the offending triangles, beside the report");
   command->add_option("--defects", a->defects, "the same, into this folder");

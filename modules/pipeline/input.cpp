@@ -1,8 +1,10 @@
 #include "pipeline/input.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "base/error.h"
+#include "fair/true_grid.h"
 #include "fem/label_table.h"
 #include "image/dicom_series.h"
 #include "image/read_contours.h"
@@ -104,6 +106,22 @@ Input read_input(const InputOptions& options) {
   else read_volume(options, input);
   if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);
   return input;
+}
+
+std::array<double, 3> reduce_to_true_grid(Input& input, int threads) {
+  const std::array<double, 3> stored = input.volume->spacing_mm;
+  std::optional<TrueGrid> grid = find_true_grid(*input.volume, threads);
+  if (!grid) return stored;
+  const std::array<double, 3> made = grid->volume.spacing_mm;
+  const auto size = [](const std::array<double, 3>& s) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g mm", s[0], s[1], s[2]);
+    return std::string(text);
+  };
+  input.warnings.push_back("the labels were made on voxels of " + size(made) + " and are stored as " + size(stored) +
+                           ": they are taken as they were made (--as-stored takes the stored voxels)");
+  input.volume = std::move(grid->volume);
+  return made;
 }
 
 void check_stack_axis(const Input& input, StackAxis axis) {

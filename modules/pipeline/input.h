@@ -33,6 +33,10 @@ struct Input {
 /// Reads the input and keeps the labels that were asked for. @throws Error(input), Error(usage)
 Input read_input(const InputOptions& options);
 
+/// Puts a label volume that is stored finer than it was made onto the grid on which it was made, with a warning that says so.
+/// @return its voxels there, or as they are stored where nothing tells otherwise, mm
+std::array<double, 3> reduce_to_true_grid(Input& input, int threads);
+
 /// Whether the input can be cut along the axis asked for: contours are stacked along z, and a volume needs two slices.
 /// @throws Error(usage), Error(input)
 void check_stack_axis(const Input& input, StackAxis axis);

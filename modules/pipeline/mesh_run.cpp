@@ -94,10 +94,14 @@ class MeshRun {
     if (!input_.volume) return;
     const LabelVolume& v = *input_.volume;
     report_.input.dimensions = v.size;
-    report_.input.spacing_mm = v.spacing_mm;
+    report_.input.spacing_mm = report_.input.effective_spacing_mm = v.spacing_mm;
     const std::vector<std::size_t> counts = count_voxels(v);
     for (std::size_t k = 1; k < v.labels.size(); ++k)
       report_.labels[k - 1].input_volume_mm3 = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
+    if (o_.sections.band_px > 0 && !o_.sections.as_stored) {
+      report_.input.effective_spacing_mm = reduce_to_true_grid(input_, o_.threads);
+      if (report_.input.effective_spacing_mm != report_.input.spacing_mm) warn(input_.warnings.back());
+    }
     double volume_mm3 = 0;
     for (const LabelReport& row : report_.labels) volume_mm3 += row.input_volume_mm3.value_or(0);
     if (o_.target == Target::volume && o_.fill.max_volume_mm3) refuse_too_many(1.5 * volume_mm3 / *o_.fill.max_volume_mm3);

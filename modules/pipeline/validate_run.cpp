@@ -38,6 +38,8 @@ std::string plain(const std::string& name) {
 /// What is read once for all meshes.
 struct Against {
   Input input;
+  std::array<int, 3> stored_size = {0, 0, 0};  // of a volume, as its file has it
+  std::array<double, 3> stored_spacing_mm = {0, 0, 0};
   int axis = 2;
   std::optional<OverlapMeter> meter;
 };
@@ -489,8 +491,9 @@ void describe_input(const Against& against, RunReport& report) {
   report.input.axis = std::string(1, "xyz"[against.axis]);
   if (against.input.volume) {
     const LabelVolume& v = *against.input.volume;
-    report.input.dimensions = v.size;
-    report.input.spacing_mm = v.spacing_mm;
+    report.input.dimensions = against.stored_size;
+    report.input.spacing_mm = against.stored_spacing_mm;
+    report.input.effective_spacing_mm = v.spacing_mm;
     report.input.sections = static_cast<std::size_t>(v.size[against.axis]);
     report.input.space = v.anatomical ? "lps" : "none";
   } else {
@@ -517,6 +520,9 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
         against.emplace();
         against->input = read_input(*o.against);
         if (against->input.volume) {
+          against->stored_size = against->input.volume->size;
+          against->stored_spacing_mm = against->input.volume->spacing_mm;
+          if (!o.as_stored) reduce_to_true_grid(against->input, o.threads);
           against->axis = stacking_axis(*against->input.volume, o.axis);
           against->meter.emplace(*against->input.volume, against->axis, o.threads);
         }

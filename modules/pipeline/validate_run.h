@@ -16,6 +16,7 @@ struct ValidateRunOptions {
   std::vector<std::string> meshes;     ///< files of any program
   std::optional<InputOptions> against; ///< labels or contours; unset: the meshes are judged alone
   StackAxis axis = StackAxis::automatic;
+  bool as_stored = false;              ///< labels that are stored finer than they were made stay as they are stored
   std::string mesh_space = "auto";     ///< "lps", "ras", or "auto": the mark in the file, else what overlaps best
   MeshReadOptions read;
   std::optional<Limits> limits;        ///< unset: the defaults

@@ -13,6 +13,7 @@ struct SectionOptions {
   std::optional<double> simplify_px;    ///< unset: 0.05 of faired contours, 0.5 of those along the pixels
   std::optional<int> virtual_sections;  ///< per gap; unset: as many as make it about a pixel
   bool faired_surface = false;          ///< also give the faired interfaces as a whole
+  bool as_stored = false;               ///< labels that are stored finer than they were made stay as they are stored
   double band_px = 0.5;                 ///< fairing (FairOptions); 0: contours along the pixels
 };
 

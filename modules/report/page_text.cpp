@@ -304,6 +304,8 @@ std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
     const auto& s = r.input.spacing_mm;
     out += row("dimensions", std::to_string(d[0]) + " x " + std::to_string(d[1]) + " x " + std::to_string(d[2]) + " voxels");
     out += row("spacing", exact(s[0]) + " x " + exact(s[1]) + " x " + exact(s[2]) + " mm");
+    const auto& e = r.input.effective_spacing_mm;
+    if (e != s) out += row("made on voxels of", exact(e[0]) + " x " + exact(e[1]) + " x " + exact(e[2]) + " mm");
   }
   if (r.input.sections > 0) out += row("sections", std::to_string(r.input.sections) + " along " + r.input.axis);
   out += row("world frame", r.input.space) + row("command", r.command) + row("program", "stackmesh " + r.version);

@@ -198,6 +198,7 @@ Json describe(const RunReport& r) {
         {"kind", r.input.kind},
         {"dimensions", grid ? Json(r.input.dimensions) : Json(nullptr)},
         {"spacing_mm", grid ? Json(r.input.spacing_mm) : Json(nullptr)},
+        {"effective_spacing_mm", grid ? Json(r.input.effective_spacing_mm) : Json(nullptr)},
         {"axis", r.input.axis},
         {"sections", r.input.sections},
         {"space", r.input.space}}},

@@ -92,6 +92,7 @@ struct RunReport {
     std::string path, kind;
     std::array<int, 3> dimensions = {0, 0, 0};          ///< 0: no grid (contours)
     std::array<double, 3> spacing_mm = {0, 0, 0};
+    std::array<double, 3> effective_spacing_mm = {0, 0, 0};  ///< of the voxels on which the labels were made
     std::string axis = "z", space = "lps";
     std::size_t sections = 0;
   } input;
