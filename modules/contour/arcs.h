@@ -16,6 +16,7 @@ struct CrackVertex {
   std::int32_t x, y;
   GridPoint position;
   bool keep = false;  ///< simplification must not drop it
+  GridPoint home = {};   ///< where it lies when it is not faired
 };
 
 /// A piece of contour between two junctions, or a closed loop (first vertex == last vertex), with one label
@@ -46,11 +47,15 @@ struct CornerRules {
 /// elsewhere in the volume; else the corner stays a junction.
 SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules);
 
+/// Draws vertices of faired arcs back to their homes, half of the way at a time, until no two edges meet elsewhere than in common end points.
+/// Edges between homes never do. @return how many vertices were drawn back
+std::size_t untangle(std::vector<Arc>& arcs);
+
 /// Simplifies arcs with tolerance (pixels); see extract_sections. Returns each arc's kept vertices.
 /// @param longest_px edges of several vertices are no longer than about this; 0: no limit
 std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px, double longest_px = 0);
 
 /// The same for arcs whose vertices lie anywhere; tolerance in grid units. Only crossings are looked after.
-std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance);
+std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance, double longest_px = 0);
 
 }  // namespace stackmesh

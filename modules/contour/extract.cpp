@@ -23,8 +23,9 @@ std::vector<Label> labels_in(const Slice& slice, const LabelVolume& volume) {
   return out;
 }
 
-Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px, double z_mm) {
-  const std::vector<std::vector<GridPoint>> kept = simplify_arcs(traced.arcs, simplify_px, longest_px);
+Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px, bool free, double z_mm) {
+  const std::vector<std::vector<GridPoint>> kept =
+      free ? simplify_free_arcs(traced.arcs, simplify_px * kGridPerPixel, longest_px) : simplify_arcs(traced.arcs, simplify_px, longest_px);
   Section section;
   section.z_mm = z_mm;
   std::unordered_map<std::uint64_t, std::int32_t> ids;
@@ -93,8 +94,10 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
       if (above != nullptr) touching_corners(components, slice, k, *above, k + 1, rules.keep);
       std::sort(rules.keep.begin(), rules.keep.end());
     }
-    const SliceArcs traced = trace_arcs(slice, rules);
-    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, k * volume.spacing_mm[axes.w]);
+    SliceArcs traced = trace_arcs(slice, rules);
+    const bool free = faired != nullptr && (faired->free || k % period != 0);
+    if (free) untangle(traced.arcs);
+    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, free, k * volume.spacing_mm[axes.w]);
     stack.sections[k].interpolated = k % period != 0;
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;

@@ -149,16 +149,6 @@ class ArcSimplifier {
     return {arcs_[c.arc].chain[c.from].position, arcs_[c.arc].chain[c.to].position};
   }
 
-  /// Do the segments meet elsewhere than in common end points?
-  static bool clash(const GridSegment& s, const GridSegment& t) {
-    if (properly_cross(s, t)) return true;
-    for (GridPoint p : {t.a, t.b})
-      if (p != s.a && p != s.b && on_segment(s, p)) return true;
-    for (GridPoint p : {s.a, s.b})
-      if (p != t.a && p != t.b && on_segment(t, p)) return true;
-    return (s.a == t.a && s.b == t.b) || (s.a == t.b && s.b == t.a);
-  }
-
   /// Halves the tolerance of chords that clash; false when none does.
   bool refine_crossings() {
     std::vector<GridSegment> segments;
@@ -209,8 +199,8 @@ std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, 
   return all_vertices(arcs);
 }
 
-std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance) {
-  if (tolerance > 0) return ArcSimplifier(arcs, tolerance / kGridPerPixel, false, 0).run();
+std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance, double longest_px) {
+  if (tolerance > 0) return ArcSimplifier(arcs, tolerance / kGridPerPixel, false, longest_px).run();
   return all_vertices(arcs);
 }
 

@@ -223,11 +223,12 @@ class SliceTracer {
   void draw_apart(CrackVertex& v, int arrived, int leaves) const {
     // The pixel lies between the crack it came by (opposite `arrived`) and the crack it leaves by.
     const int to_x = kStepX[leaves] - kStepX[arrived], to_y = kStepY[leaves] - kStepY[arrived];
+    const int quarter = kGridPerPixel / 4;
+    v.home = {v.x * kGridPerPixel + quarter * to_x, v.y * kGridPerPixel + quarter * to_y};
     if (const FairedLabels::Corner* c = v.keep ? nullptr : faired(v.x, v.y, to_y < 0 ? FairedLabels::Corner::south : FairedLabels::Corner::north)) {
       v.position = displaced(*c);
     } else {
-      const int quarter = kGridPerPixel / 4;
-      v.position = {v.x * kGridPerPixel + quarter * to_x, v.y * kGridPerPixel + quarter * to_y};
+      v.position = v.home;
     }
   }
 
@@ -246,9 +247,9 @@ class SliceTracer {
   CrackVertex vertex(int x, int y) const {
     const bool keep =
         !rules_.keep.empty() && std::binary_search(rules_.keep.begin(), rules_.keep.end(), corner_key(x, y));
-    if (!keep)
-      if (const FairedLabels::Corner* c = faired(x, y, FairedLabels::Corner::whole)) return {x, y, displaced(*c), false};
-    return {x, y, {x * kGridPerPixel, y * kGridPerPixel}, keep};
+    const GridPoint home = {x * kGridPerPixel, y * kGridPerPixel};
+    const FairedLabels::Corner* c = keep ? nullptr : faired(x, y, FairedLabels::Corner::whole);
+    return {x, y, c != nullptr ? displaced(*c) : home, keep, home};
   }
 
   /// All arcs: first from junction to junction, then the closed loops.

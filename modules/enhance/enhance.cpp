@@ -155,7 +155,7 @@ class Enhancement {
   /// Draws the stitched vertices to the faired interfaces.
   void settle(ComplexMesh& mesh) {
     const Reference reference(mesh, reference_cell_mm(), o_.threads, &*faired_);
-    const double reach = std::max(o_.pixel_mm, o_.gap_mm);
+    const double reach = 2 * std::max(o_.pixel_mm, o_.gap_mm);
     std::vector<Vec3> to = mesh.points;
     const std::vector<double> bends = surface_bends(*faired_, o_.threads);
     bend_.assign(to.size(), -1);

@@ -12,6 +12,7 @@ namespace {
 
 using namespace fair;
 
+constexpr double kVirtualBand_px = 1, kVirtualBand_gaps = 1.5;  // of slices that are a guess only
 constexpr int kReach = 64, kRounds = 2;  // of restoring volumes: steps of averaging, rounds
 constexpr float kApart = 0.1F;  // of two contours that pass a corner, from the diagonal between them (times the root of 2), in pixels
 
@@ -31,7 +32,7 @@ std::vector<FairedLabels::Corner> cut_at(const Net& net, int z) {
   for (std::size_t v = net.slab_start[z]; v < net.slab_start[z + 1]; ++v) {
     const std::int32_t w = net.next[v][5];
     if (w < 0) continue;
-    const float from = -0.5F + net.way[v][2], to = 0.5F + net.way[w][2];  // the plane is at 0
+    const float from = -0.5F + std::clamp(net.way[v][2], -0.499F, 0.499F), to = 0.5F + std::clamp(net.way[w][2], -0.499F, 0.499F);  // the plane is at 0
     const float share = -from / (to - from);
     FairedLabels::Corner c = {net.cell[v].x, net.cell[v].y, FairedLabels::Corner::whole,
                               net.way[v][0] + share * (net.way[w][0] - net.way[v][0]), net.way[v][1] + share * (net.way[w][1] - net.way[v][1])};
@@ -85,6 +86,8 @@ InterfaceComplex surface_of(const Net& net, const LabelVolume& volume, int threa
 FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const FairOptions& options, Progress&) {
   NetOptions n;
   n.band_px = options.band_px;
+  n.virtual_band_px = std::max(options.band_px, kVirtualBand_px);
+  n.virtual_band_gaps = kVirtualBand_gaps;
   n.period = options.virtual_per_gap + 1;
   n.threads = options.threads;
   if (const char* e = std::getenv("THIN")) n.thin_px = atof(e);
@@ -94,6 +97,7 @@ FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const Fai
   bend_least(net, bend);
   restore_local_volumes(net, kReach, kRounds, options.threads);
   FairedLabels out;
+  out.free = options.band_px > 0.5;
   out.slices.resize(net.size[2]);
   parallel_for(out.slices.size(), options.threads, [&](std::size_t z) { out.slices[z] = cut_at(net, static_cast<int>(z)); });
   if (options.surface) out.surface = surface_of(net, volume, options.threads);

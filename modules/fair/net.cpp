@@ -254,9 +254,10 @@ class NetBuilder {
   void set_bounds(std::int32_t v) {
     const Cell c = net_.cell[v];
     const std::array<int, 3> at = {c.x, c.y, c.z};
-    const bool real = real_slice(std::clamp(c.z - 1, 0, net_.size[2] - 1)) || real_slice(std::clamp(c.z, 0, net_.size[2] - 1));
-    const float plane = std::max(kInside, static_cast<float>(real ? options_.band_px : options_.virtual_band_px) - 0.001F);
-    Float3 low = {-plane, -plane, -kInside}, high = {plane, plane, kInside}, start = {0, 0, 0};
+    const bool real_below = real_slice(std::clamp(c.z - 1, 0, net_.size[2] - 1)), real_above = real_slice(std::clamp(c.z, 0, net_.size[2] - 1));
+    const float plane = std::max(kInside, static_cast<float>(real_below || real_above ? options_.band_px : options_.virtual_band_px) - 0.001F);
+    const float along = std::max(kInside, static_cast<float>(options_.virtual_band_gaps));
+    Float3 low = {-plane, -plane, real_below ? -kInside : -along}, high = {plane, plane, real_above ? kInside : along}, start = {0, 0, 0};
     keep_room(c, low, high);
     if (shares_cell(v)) {  // each sheet stays on its side of the cell
       const Float3 middle = middle_of(net_.crossed[v]);
@@ -276,9 +277,12 @@ class NetBuilder {
     net_.way[v] = start;
   }
 
-  /// Where a voxel has other labels on two opposite sides, two sheets pass it: either keeps some room to its centre.
+  /// Where a label is only a few voxels thick, the sheets on either side of it share the room fairly: along every direction into
+  /// the cell's voxels each may go half of the way to the next sheet, less the room that it keeps.
   void keep_room(const Cell& c, Float3& low, Float3& high) const {
-    const float room = static_cast<float>(0.5 - options_.thin_px);
+    const float room = static_cast<float>(options_.thin_px);
+    const bool wide = high[0] > 0.5F;
+    const int longest = static_cast<int>(std::ceil(2 * (std::max({high[0], high[2], -low[2]}) + room)));
     for (int corner = 0; corner < 8; ++corner) {
       const std::array<int, 3> voxel = {c.x - 1 + (corner & 1), c.y - 1 + (corner >> 1 & 1), c.z - 1 + (corner >> 2)};
       const std::uint16_t own = label_(voxel[0], voxel[1], voxel[2]);
@@ -286,10 +290,14 @@ class NetBuilder {
         std::array<int, 3> step;
         for (int a = 0; a < 3; ++a) step[a] = (axes >> a & 1) == 0 ? 0 : (corner >> a & 1) ? -1 : 1;
         if (label_(voxel[0] + step[0], voxel[1] + step[1], voxel[2] + step[2]) == own) continue;
-        if (label_(voxel[0] - step[0], voxel[1] - step[1], voxel[2] - step[2]) == own) continue;
+        int thick = 1;  // voxels of the label from here on, away from the cell
+        while (thick < longest && label_(voxel[0] - thick * step[0], voxel[1] - thick * step[1], voxel[2] - thick * step[2]) == own) ++thick;
+        if (thick == longest) continue;
+        const float share = 0.5F * static_cast<float>(thick) - room;
         for (int a = 0; a < 3; ++a) {
-          if (step[a] > 0) low[a] = std::max(low[a], -room);
-          if (step[a] < 0) high[a] = std::min(high[a], room);
+          if (wide && a != 2 && step[2] != 0) continue;  // slices that jitter do not make a label thin
+          if (step[a] > 0) low[a] = std::max(low[a], -share);
+          if (step[a] < 0) high[a] = std::min(high[a], share);
         }
       }
     }

@@ -48,10 +48,11 @@ struct Net {
 
 struct NetOptions {
   double band_px = 0.5;     ///< how far a vertex may leave the middle of its cell within the slices' planes, in pixels
-  double thin_px = 0.1;    ///< room that each of two sheets keeps to a voxel centre between them
+  double thin_px = 0.1;     ///< room that each of two sheets keeps to the middle between them, where they are near
   double split_px = 0.1;    ///< room between two sheets of one cell, on either side of its middle
   int period = 1;           ///< every period-th slice is real, those between are interpolated
   double virtual_band_px = 0.5;  ///< band of cells that touch no real slice
+  double virtual_band_gaps = 0.5;  ///< the same along the stacking axis, in gaps, away from real slices
   int threads = 0;
 };
 

@@ -106,4 +106,14 @@ inline bool properly_cross(const GridSegment& s, const GridSegment& t) {
   return c != 0 && d != 0 && (c > 0) != (d > 0);
 }
 
+/// Do the segments meet elsewhere than in common end points?
+inline bool clash(const GridSegment& s, const GridSegment& t) {
+  if (properly_cross(s, t)) return true;
+  for (GridPoint p : {t.a, t.b})
+    if (p != s.a && p != s.b && on_segment(s, p)) return true;
+  for (GridPoint p : {s.a, s.b})
+    if (p != t.a && p != t.b && on_segment(t, p)) return true;
+  return (s.a == t.a && s.b == t.b) || (s.a == t.b && s.b == t.a);
+}
+
 }  // namespace stackmesh
