@@ -143,7 +143,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"enhance", o.enhance ? "on" : "off"},
                     {"smooth", std::to_string(e.smooth)},
                     {"edge_length_mm", e.edge_length.empty() ? "unset" : e.edge_length},
-                    {"deviation_mm", e.deviation > 0 ? text_of(e.deviation) : "half a pixel"},
+                    {"deviation_mm", e.deviation > 0 ? text_of(e.deviation) : "default"},
                     {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},
                     {"edge_max_mm", e.edge_max > 0 ? text_of(e.edge_max) : "default"},
                     {"gradation", text_of(e.gradation)},

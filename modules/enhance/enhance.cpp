@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -188,7 +187,7 @@ class Enhancement {
     s.bend = bend_;
     s.wall_reach_mm = wall_reach_;
     s.gradation = o_.gradation;
-    s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(0.5 * o_.pixel_mm);
+    s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or((o_.faired != nullptr ? 0.25 : 0.5) * o_.pixel_mm);
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
       warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
            number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
@@ -293,7 +292,6 @@ class Enhancement {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
     RemeshOptions r;
-    if (std::getenv("DBG")) { auto q=[&](const char*n, std::vector<double> x){ std::sort(x.begin(),x.end()); std::fprintf(stderr,"%s p1 %.2f p5 %.2f p20 %.2f p50 %.2f\n",n,x[x.size()/100],x[x.size()/20],x[x.size()/5],x[x.size()/2]); }; q("size",size); q("wall",wall_); q("shell",shell_); auto b=bend_; q("bend",b); }
     if (o_.target_tets && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);

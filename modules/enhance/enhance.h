@@ -22,7 +22,7 @@ struct EnhanceOptions {
   std::map<Label, double> label_volume_mm3;  ///< volume that a label should have, as far as small moves give it; else the
                                              ///< stitched one's (which lies between slices as a frustum, not as voxels)
   std::optional<double>
-      deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default half a pixel
+      deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default a quarter of a pixel of faired interfaces, else half a pixel
   std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels
   std::optional<double> edge_max_mm;  ///< by curvature: default a tenth of the label's box
   std::optional<std::size_t>

@@ -14,6 +14,9 @@ namespace stackmesh {
 namespace {
 
 constexpr double kAcross = 3;       // edges of a thin wall are at most this many times as long as it is thick
+constexpr double kTurn = 0.34;      // over one edge of a uniform length a surface turns by no more than this, radians,
+constexpr double kShortest = 0.8;   // but edges are no shorter for it than this share of the length
+constexpr double kTurnByCurvature = 0.38;  // the same for lengths by curvature, down to the smallest length
 constexpr double kLossShare = 0.1;  // of a label's volume that chords may cut off, before the fit gives it back
 
 Vec3 unit(const Vec3& a) {
@@ -77,10 +80,13 @@ class Sizing {
           }
       if (count > 0) bend_[v] = sum / count;
     });
+    for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
+      if (fixed_[v] || o_.edge_length_mm) size_[v] = std::clamp(kTurn / std::max(bend_[v], 1e-12), kShortest * size_[v], size_[v]);
+    });
     if (o_.edge_length_mm) return;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       if (!fixed_[v])
-        size_[v] = std::clamp(chord(v, o_.deviation_mm), std::min(o_.edge_min_mm, size_[v]), size_[v]);
+        size_[v] = std::clamp(std::min(chord(v, o_.deviation_mm), kTurnByCurvature / std::max(bend_[v], 1e-12)), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
   }
 

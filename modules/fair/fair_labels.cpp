@@ -1,7 +1,6 @@
 #include "fair/fair_labels.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "base/parallel.h"
 #include "fair/cell_sheets.h"
@@ -90,12 +89,14 @@ FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const Fai
   n.virtual_band_gaps = kVirtualBand_gaps;
   n.period = options.virtual_per_gap + 1;
   n.threads = options.threads;
-  if (const char* e = std::getenv("THIN")) n.thin_px = atof(e);
   Net net = build_net(volume, axes_for(stacking_axis), n);
   BendOptions bend;
   bend.threads = options.threads;
+  // The further vertices may go, the longer the waves that have to be evened out.
+  const double wide = 2 * std::max(options.band_px, 0.5);
+  bend.iterations = static_cast<int>((n.period > 1 ? 2 : 1) * wide * bend.iterations);
   bend_least(net, bend);
-  restore_local_volumes(net, kReach, kRounds, options.threads);
+  restore_local_volumes(net, static_cast<int>(wide * kReach), kRounds, options.threads);
   FairedLabels out;
   out.free = options.band_px > 0.5;
   out.slices.resize(net.size[2]);
