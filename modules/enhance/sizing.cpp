@@ -16,7 +16,7 @@ namespace {
 constexpr double kAcross = 3;       // edges of a thin wall are at most this many times as long as it is thick
 constexpr double kTurn = 0.34;      // over one edge of a uniform length a surface turns by no more than this, radians,
 constexpr double kShortest = 0.8;   // but edges are no shorter for it than this share of the length
-constexpr double kTurnByCurvature = 0.38;  // the same for lengths by curvature, down to the smallest length
+constexpr double kTurnByCurvature = 0.4;  // the same for lengths by curvature, down to the smallest length
 constexpr double kLossShare = 0.1;  // of a label's volume that chords may cut off, before the fit gives it back
 
 Vec3 unit(const Vec3& a) {

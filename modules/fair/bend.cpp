@@ -17,45 +17,59 @@ class Bender {
   Bender(Net& net, const BendOptions& options) : net_(net), options_(options), n_(net.cell.size()) {
     double largest = 0;
     for (double h : net.spacing_mm) largest = std::max(largest, h);
-    for (int a = 0; a < 3; ++a) weight_[a] = static_cast<float>(largest * largest / (net.spacing_mm[a] * net.spacing_mm[a]));
-    share_.resize(n_);
-    used_by_.assign(n_, 0);
+    std::array<float, 3> weight;
+    for (int a = 0; a < 3; ++a) weight[a] = static_cast<float>(largest * largest / (net.spacing_mm[a] * net.spacing_mm[a]));
+    const auto uses = [&](std::size_t v, int d) { return (net.uses[v] >> d & 1) != 0; };
+    std::vector<float> share(n_);
     for_each_index(n_, options.threads, [&](std::size_t v) {
       float sum = 0;
+      for (int d = 0; d < kDirections; ++d)
+        if (uses(v, d)) sum += weight[d / 2];
+      share[v] = sum > 0 ? 1 / sum : 0;
+    });
+    links_.resize(n_);
+    for_each_index(n_, options.threads, [&](std::size_t v) {
+      Links& l = links_[v];
+      l.own = net.uses[v] ? 1.0F : 0.0F;
+      for (int a = 0; a < 4; ++a) l.place[a] = 0;
       for (int d = 0; d < kDirections; ++d) {
-        if (net_.uses[v] >> d & 1) sum += weight_[d / 2];
-        const std::int32_t w = net_.next[v][d];
-        if (w >= 0 && (net_.uses[w] >> (d ^ 1) & 1)) used_by_[v] |= static_cast<std::uint8_t>(1 << d);
+        const std::int32_t w = net.next[v][d];
+        l.next[d] = w >= 0 ? w : static_cast<std::int32_t>(v);
+        l.out[d] = uses(v, d) ? weight[d / 2] * share[v] : 0;
+        l.in[d] = w >= 0 && uses(w, d ^ 1) ? weight[d / 2] * share[w] : 0;
+        l.place[d / 2] -= (d & 1) ? l.out[d] : -l.out[d];
       }
-      share_[v] = sum > 0 ? 1 / sum : 0;
     });
   }
 
   void run() {
-    std::vector<Float3>& x = net_.way;
-    std::vector<Float3> y = x, bend(n_), slope(n_);
+    std::vector<Place> x(n_), y, bend(n_), slope(n_), low(n_), high(n_);
+    for_each_index(n_, options_.threads, [&](std::size_t v) {
+      x[v] = packed(net_.way[v]);
+      low[v] = packed(net_.low[v]);
+      high[v] = packed(net_.high[v]);
+    });
+    y = x;
     const float step = options_.order == 2 ? 0.25F : 0.0625F;
     double momentum = 1;
     std::vector<double> sums((n_ + kRun - 1) / kRun);
     for (int i = 0; i < options_.iterations; ++i) {
-      differences(y, bend, true);
+      for_each_index(n_, options_.threads, [&](std::size_t v) { bend[v] = difference(y, v) + links_[v].place; }, kRun);
       if (options_.order == 3) {
-        differences(bend, slope, false);
-        transposed(slope, bend);
+        for_each_index(n_, options_.threads, [&](std::size_t v) { slope[v] = difference(bend, v); }, kRun);
+        for_each_index(n_, options_.threads, [&](std::size_t v) { bend[v] = transposed(slope, v); }, kRun);
       }
       const double next_momentum = (1 + std::sqrt(1 + 4 * momentum * momentum)) / 2;
       const float ahead = static_cast<float>((momentum - 1) / next_momentum);
       parallel_for(sums.size(), options_.threads, [&](std::size_t run) {
         double against = 0;
         for (std::size_t v = run * kRun; v < std::min(n_, (run + 1) * kRun); ++v) {
-          const Float3 down = transposed_at(bend, v);
-          for (int a = 0; a < 3; ++a) {
-            const float to = std::clamp(y[v][a] - step * down[a], net_.low[v][a], net_.high[v][a]);
-            const float moved = to - x[v][a];
-            against += static_cast<double>(y[v][a] - to) * moved;
-            slope[v][a] = to + ahead * moved;
-            x[v][a] = to;
-          }
+          const Place wanted = y[v] - step * transposed(bend, v);
+          const Place above = wanted < low[v] ? low[v] : wanted, to = above > high[v] ? high[v] : above;
+          const Place moved = to - x[v], product = (y[v] - to) * moved;
+          against += static_cast<double>(product[0]) + product[1] + product[2];
+          slope[v] = to + ahead * moved;
+          x[v] = to;
         }
         sums[run] = against;
       });
@@ -69,48 +83,39 @@ class Bender {
         std::swap(y, slope);
       }
     }
+    for_each_index(n_, options_.threads, [&](std::size_t v) { net_.way[v] = {x[v][0], x[v][1], x[v][2]}; });
   }
 
  private:
-  /// out = L in; with the cells' own places if `places`.
-  void differences(const std::vector<Float3>& in, std::vector<Float3>& out, bool places) const {
-    for_each_index(n_, options_.threads, [&](std::size_t v) {
-      const std::uint8_t uses = net_.uses[v];
-      Float3 sum = {0, 0, 0};
-      for (int d = 0; d < kDirections; ++d) {
-        if (!(uses >> d & 1)) continue;
-        const Float3& w = in[net_.next[v][d]];
-        const float weight = weight_[d / 2];
-        for (int a = 0; a < 3; ++a) sum[a] += weight * w[a];
-        if (places) sum[d / 2] += (d & 1) ? weight : -weight;
-      }
-      for (int a = 0; a < 3; ++a) out[v][a] = uses ? in[v][a] - share_[v] * sum[a] : 0;
-    }, kRun);
-  }
+  typedef float Place __attribute__((vector_size(16)));  // three coordinates, and one that stays 0
 
-  Float3 transposed_at(const std::vector<Float3>& in, std::size_t v) const {
-    Float3 sum = {0, 0, 0};
-    if (net_.uses[v]) sum = in[v];
-    const std::uint8_t used_by = used_by_[v];
-    for (int d = 0; d < kDirections; ++d) {
-      if (!(used_by >> d & 1)) continue;
-      const std::int32_t w = net_.next[v][d];
-      const float weight = weight_[d / 2] * share_[w];
-      for (int a = 0; a < 3; ++a) sum[a] -= weight * in[w][a];
-    }
+  /// A row of L and a column of it.
+  struct Links {
+    Place place;  // L applied to the middles of the cells
+    std::array<std::int32_t, kDirections> next;
+    std::array<float, kDirections> out, in;
+    float own;
+  };
+
+  static Place packed(const Float3& p) { return Place{p[0], p[1], p[2], 0}; }
+
+  Place difference(const std::vector<Place>& in, std::size_t v) const {
+    const Links& l = links_[v];
+    Place sum = l.own * in[v];
+    for (int d = 0; d < kDirections; ++d) sum -= l.out[d] * in[l.next[d]];
     return sum;
   }
-
-  void transposed(const std::vector<Float3>& in, std::vector<Float3>& out) const {
-    for_each_index(n_, options_.threads, [&](std::size_t v) { out[v] = transposed_at(in, v); }, kRun);
+  Place transposed(const std::vector<Place>& in, std::size_t v) const {
+    const Links& l = links_[v];
+    Place sum = l.own * in[v];
+    for (int d = 0; d < kDirections; ++d) sum -= l.in[d] * in[l.next[d]];
+    return sum;
   }
 
   Net& net_;
   const BendOptions& options_;
   const std::size_t n_;
-  std::array<float, 3> weight_;
-  std::vector<float> share_;            // one over the sum of the weights that a vertex uses
-  std::vector<std::uint8_t> used_by_;   // directions in which a neighbour uses the vertex
+  std::vector<Links> links_;
 };
 
 }  // namespace
