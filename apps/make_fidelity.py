@@ -339,10 +339,10 @@ def table(heads, lines):
             *("| " + " | ".join(line) + " |" for line in lines), ""]
 
 
-def mode_tables(mode, modes, cells, names):
+def mode_tables(mode, modes, cells, names, band):
     edge, _, what, more = modes[mode]
     options = " ".join(["--edge-length", f"{edge:g}", *more])
-    lines = [f"### {mode}: {what}", "", f"`{options}`:", "",
+    lines = [f"### {mode}: {what}", "", f"`{options}`" + (" (a program without `--band` runs without it)" if more and not band else "") + ":", "",
              *table(["shape", "limits", "**ours**, mm / deg", "above 20°, %", "volume, %", "triangles", *(f"{n}, mm / deg" for n in names),
                      *(f"sinc {s}" for s in SINC), MESH3], [edged_line(c) for c in cells]),
              "No option:", "",
@@ -362,7 +362,8 @@ def missed_lines(cells):
     return lines
 
 
-def page(shapes, scanned, args, version):
+def page(shapes, scanned, args, version, band):
+    """The Markdown text; `band`: whether all programs know --band."""
     names = [str(n) for n in args.names]
     lines = [
         "# Fidelity to the true shape", "",
@@ -384,7 +385,7 @@ def page(shapes, scanned, args, version):
         for mode in MODES:
             cells = [c for c in shapes if c.mode == mode]
             if cells:
-                lines += mode_tables(mode, MODES, cells, names)
+                lines += mode_tables(mode, MODES, cells, names, band)
         planes = [c for c in shapes if c.shape in PLANES and "error" not in c.edged[0] and "error" not in c.bare[0]]
         if planes:
             lines += ["### The plane between two labels", "",
@@ -397,7 +398,7 @@ def page(shapes, scanned, args, version):
         for mode in SCANNED_MODES:
             cells = [c for c in scanned if c.mode == mode]
             if cells:
-                lines += mode_tables(mode, SCANNED_MODES, cells, names)
+                lines += mode_tables(mode, SCANNED_MODES, cells, names, band)
     return "\n".join(lines)
 
 
@@ -446,7 +447,7 @@ def main():
     known = [Cell(bench, s, m, MODES) for m in MODES if m in modes for s in shapes]
     found = [Cell(bench, s, m, SCANNED_MODES) for m in SCANNED_MODES if m in modes for s in scans]
     version = subprocess.run([args.programs[0], "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    text = page(known, found, args, version)
+    text = page(known, found, args, version, all(bench.identity(p)[1] for p in args.programs))
     if args.output or not (args.only or args.modes):
         (args.output or ROOT / "docs" / "fidelity.md").write_text(text)
     else:
