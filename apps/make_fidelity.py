@@ -4,7 +4,7 @@
   make_fidelity.py --cache FOLDER                                  all shapes and modes; some minutes
   make_fidelity.py --cache FOLDER --only sphere,bone --modes iso1  those cells, to the terminal
   make_fidelity.py --cache FOLDER --columns old/stackmesh          an older build beside the one at hand
-  make_fidelity.py --cache FOLDER --scanned                        scanned bones (closed STL) as truths, too
+  make_fidelity.py --cache FOLDER --scanned --thick                scanned bones (closed STL) as truths, and thick slices, too
 
 Each cell: a known shape is voxelised, `stackmesh surface` runs on the voxels with an edge length of one and a half
 voxels and again with no option, and the surface is judged against the shape: mean distance, mean angle between the
@@ -33,6 +33,9 @@ SHAPES = ("sphere", "torus", "capsule", "bone", "shell", "vessel", "halves", "ti
 PLANES = ("halves", "tilted")         # two labels that share an oblique plane: written as .vtp, which carries the labels
 MANY = ("shell", *PLANES)
 SCANNED = ("sacrum_vhf/VHF_Left_Sacrum.stl", "foot_vhf/VHF_Left_*.stl")
+# Organs of which every so many slices are kept: (name, file, label or -1 for all, every).
+THICK = (("heart", "heart_totalseg/heart.nii.gz", -1, 5), ("liver", "liver_cgal/liver.nii.gz", -1, 6),
+         ("lungs", "lung_lr_cip/lungs_left_right.nrrd", -1, 17), ("vertebra", "vertebrae_itksnap/vb-seg.mha", 3, 5))
 SINC = ("0.15", "0.5")
 MESH3 = "Mesh_3"
 
@@ -227,6 +230,58 @@ class Bench:
         return self.kept(name, make)
 
 
+class Thick:
+    """An organ of which every so many slices are kept, rebuilt and judged against all of them (thick_slices.py of the tools)."""
+
+    def __init__(self, bench, name, file, label, every):
+        self.name, self.every, self.bench = name, every, bench
+        self.script = bench.args.tools / "thick_slices.py"
+        self.common = [str(bench.args.data / file), "--label", str(label), "--every", str(every)]
+        self.stack = bench.cache / f"labels-{bench.stamp}" / f"thick_{name}_{every}.nii.gz"
+        if not self.stack.is_file():
+            part = self.stack.with_name("part_" + self.stack.name)
+            self.run("--write-thick", str(part))
+            part.replace(self.stack)
+        self.peers = {p: bench.kept(f"thick_{name}_{every}_{p}", lambda p=p: self.results("--peers", p)) for p in ("vtk", "sdf", "sdfcubic")}
+        self.ours = [self.rebuild(p) for p in bench.args.programs]
+
+    def run(self, *more):
+        run = subprocess.run([sys.executable, self.script, *self.common, *more], capture_output=True, text=True)
+        if run.returncode != 0:
+            fail(f"{(run.stderr.strip().splitlines() or ['no word'])[-1]}, at {self.script} for {self.name}; check --tools and --data")
+        return json.loads(run.stdout)
+
+    def results(self, *more):
+        return next(iter(self.run(*more)["results"].values()))
+
+    def rebuild(self, program):
+        def make():
+            with tempfile.TemporaryDirectory() as folder:
+                mesh = pathlib.Path(folder) / "mesh.ply"
+                run = subprocess.run([program, "surface", self.stack, "-o", mesh, "--quiet"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                     text=True, errors="replace")
+                if run.returncode != 0 or not mesh.is_file():
+                    return {"error": f"exit {run.returncode}: {(run.stderr.strip().splitlines() or [''])[-1]}"}
+                return self.results("--peers", "none", "--mesh", str(mesh))
+        return self.bench.kept(f"thick_{self.name}_{self.every}_{self.bench.identity(program)[0]}", make)
+
+    def bar(self):
+        """The better of linear and cubic shape interpolation: (Dice, mean mm)."""
+        both = (self.peers["sdf"], self.peers["sdfcubic"])
+        return max(p["dice"] for p in both), min(p["mean"] for p in both)
+
+    def line(self):
+        def pair(f, bar=None):
+            if "error" in f:
+                return f"**{f['error'].split(':')[0]}**"
+            return (f"{bold(format(f['dice'], '.4f'), bar is not None and f['dice'] < bar[0])} / "
+                    f"{bold(format(f['mean'], '.3f'), bar is not None and f['mean'] > bar[1])}")
+        ours = self.ours[0]
+        return [self.name, str(self.every), pair(ours, self.bar()), *((f"{ours['p95']:.2f}", f"{ours['max']:.1f}", f"{ours['vol_err'] * 100:+.2f}",
+                f"{ours['triangles']:,}") if "error" not in ours else ("", "", "", "")), *(pair(f) for f in self.ours[1:]),
+                *(pair(self.peers[p]) for p in ("sdf", "sdfcubic", "vtk"))]
+
+
 def read_medit(np, path):
     """Points, and the triangles of a .mesh file, each once."""
     words = path.read_text().split()
@@ -247,6 +302,8 @@ def slug(shape):
 # ---- cells -----------------------------------------------------------------------------------------------------
 
 def brief(f):
+    if "dice" in f:
+        return f"{f['dice']:.4f} / {f['mean']:.3f}"
     return f"{f['mean_mm']:.3f} / {f['normal_mean_deg']:.1f}" if "mean_mm" in f else ", ".join(f"{k} {v:g}" for k, v in f.items())
 
 
@@ -369,7 +426,7 @@ def missed_lines(cells):
     return lines
 
 
-def page(shapes, scanned, args, version, band):
+def page(shapes, scanned, thick, args, version, band):
     """The Markdown text; `band`: whether all programs know --band."""
     names = [str(n) for n in args.names]
     lines = [
@@ -407,6 +464,14 @@ def page(shapes, scanned, args, version, band):
             cells = [c for c in scanned if c.mode == mode]
             if cells:
                 lines += mode_tables(mode, SCANNED_MODES, cells, names, band)
+    if thick:
+        lines += ["## Thick slices", "",
+                  "Every so many slices of an organ are kept, its surface is made of them with no option, and judged against all slices between the first "
+                  "and the last one kept: Dice of the voxel centres / mean distance in mm of the voxel faces to the surface. Beside it: shape "
+                  "interpolation (signed distances in each slice) linear and cubic, and windowed sinc of the thick stack. **Bold** is short of the better "
+                  "of linear and cubic.", "",
+                  *table(["organ", "every", "**ours**, Dice / mm", "95 %, mm", "largest, mm", "volume, %", "triangles", *(f"{n}, Dice / mm" for n in names),
+                          "linear", "cubic", "sinc 0.5"], [t.line() for t in thick])]
     return "\n".join(lines)
 
 
@@ -421,6 +486,7 @@ def arguments():
     parser.add_argument("--only", metavar="SHAPES", help="for example sphere,bone; parts of file names for scanned bones")
     parser.add_argument("--modes", nargs="+", metavar="MODE", help="for example iso1 up2,2")
     parser.add_argument("--scanned", action="store_true", help="scanned bones, too; with --only or --modes only they, where nothing else fits")
+    parser.add_argument("--thick", action="store_true", help="thick slices, too; --only chooses heart, liver, lungs, vertebra")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="OUT.md", help="default docs/fidelity.md, or the terminal with --only or --modes")
     args = parser.parse_args()
     given = [str(c).split("=", 1) if "=" in str(c) else [pathlib.Path(c).name, str(c)] for c in args.columns]
@@ -449,15 +515,20 @@ def main():
     scans = [s for s in scans if only is None or any(o.lower() in slug(s).lower() for o in only)]
     if args.scanned and not scans and only is None:
         fail(f"no scanned bones below {args.data}; name the folder with --data")
-    if not shapes and not scans:
+    organs = [t for t in THICK if args.thick and (only is None or t[0] in only)]
+    for _, file, _, _ in organs:
+        if not (args.data / file).is_file():
+            fail(f"no {file} below {args.data}; name the folder with --data")
+    if not shapes and not scans and not organs:
         fail(f"no shape matches '{args.only}', at --only; known are {' '.join(SHAPES)}")
     bench = Bench(args)
     known = [Cell(bench, s, m, MODES) for m in MODES if m in modes for s in shapes]
     found = [Cell(bench, s, m, SCANNED_MODES) for m in SCANNED_MODES if m in modes for s in scans]
+    thick = [Thick(bench, *t) for t in organs]
     version = subprocess.run([args.programs[0], "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    text = page(known, found, args, version, all(bench.identity(p)[1] for p in args.programs))
+    text = page(known, found, thick, args, version, all(bench.identity(p)[1] for p in args.programs))
     if args.output or not (args.only or args.modes):
-        (args.output or ROOT / "docs" / "fidelity.md").write_text(text)
+        (args.output or ROOT / "docs" / "fidelity.md").write_text(text.rstrip("\n") + "\n")
     else:
         print(text)
     for line in bench.failed:
