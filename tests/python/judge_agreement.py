@@ -225,7 +225,7 @@ def main():
     compare("mesh to labels, mean", back.mean(), row["reverse_distance_mm"]["mean"], 0.016)
     compare("mesh to labels, 95 %", np.quantile(back, 0.95), row["reverse_distance_mm"]["p95"])
     compare("wrong centres", (inside ^ mask).sum(), row["wrong_centres"], 0.1, 0.002 * mask.sum())
-    compare("outside the band, mean", band.mean(), row["band_distance_mm"]["mean"], 0.03, 0.0005)
+    compare("outside the band, mean", band.mean(), row["band_distance_mm"]["mean"], 0.05, 0.0005)  # 20,000 points: three standard errors
     compare("outside the band, share", (band > 1e-4).mean(), row["band_distance_mm"]["outside_share"], 0.03, 0.002)
     compare("bends, mean", bend, row["mean_bend_deg"])
     compare("bends above 40, share", sharp, row["bends_above_40_share"])
