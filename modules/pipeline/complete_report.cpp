@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "validate/check_bends.h"
 #include "validate/check_thickness.h"
 #include "validate/defects.h"
 
@@ -16,6 +17,16 @@ void fill_thickness(RunReport& report, const std::vector<LabelThickness>& thickn
       if (t.label == row.label) {
         row.thin_share = t.thin_share;
         row.thickness_p5_mm = t.p5_mm;
+      }
+}
+
+void fill_bends(RunReport& report, const BendCheck& bends) {
+  if (bends.surface.edges > 0) report.bends = bends.surface;
+  for (LabelReport& row : report.labels)
+    for (const LabelBends& b : bends.labels)
+      if (b.label == row.label && b.bends.edges > 0) {
+        row.mean_bend_deg = b.bends.mean_deg;
+        row.bends_above_40_share = b.bends.above_40_share;
       }
 }
 
@@ -75,6 +86,7 @@ void fill_label_rows(RunReport& report, const std::vector<LabelFidelity>* fideli
         row.surface_volume_mm3 = s.volume_mm3;
         row.surface_area_mm2 = s.area_mm2;
         row.angle_min_deg = s.angle_min_deg;
+        row.nonmanifold_edges = s.nonmanifold_edges;
       }
     if (report.volume)
       for (const LabelTets& t : report.volume->labels)
@@ -88,6 +100,9 @@ void fill_label_rows(RunReport& report, const std::vector<LabelFidelity>* fideli
     for (const LabelFidelity& f : *fidelity)
       if (f.label == row.label) {
         row.dice = f.dice;
+        row.wrong_centres = f.wrong_centres;
+        row.wrong_centres_share = f.wrong_centres_share;
+        row.band_distance_mm = f.band_distance_mm;
         row.distance_mm = f.distance_mm;
         row.reverse_distance_mm = f.reverse_distance_mm;
         row.input_components = f.input_components;
@@ -102,10 +117,13 @@ void complete_report(RunReport& report, const Judged& j) {
   const std::vector<LabelThickness> thickness = check_thickness(*j.surface, thick);
   fill_label_rows(report, j.fidelity);
   fill_thickness(report, thickness);
+  const BendCheck bends = check_bends(*j.surface, j.threads);
+  fill_bends(report, bends);
   JudgeInput in;
   in.surface = &*report.surface;
   if (report.volume) in.volume = &*report.volume;
   in.thickness = &thickness;
+  in.bends = &bends;
   in.fidelity = j.fidelity;
   for (const LabelReport& row : report.labels) {
     in.labels.push_back({row.label, row.name});

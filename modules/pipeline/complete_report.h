@@ -31,7 +31,7 @@ struct Judged {
 };
 
 /// Completes a report that holds `surface`, `volume`, `limits` and a row for each label with its number, name and input
-/// volume: fills the rows, measures thickness, gives the verdicts and finds the defects.
+/// volume: fills the rows, measures thickness and bends, gives the verdicts and finds the defects.
 void complete_report(RunReport& report, const Judged& judged);
 
 }  // namespace stackmesh

@@ -17,7 +17,8 @@ std::string printed(const char* format, double value) {
   return text;
 }
 
-double worst_distance(const RunReport& r, std::optional<Distance> LabelReport::*which, double Distance::*part) {
+template <class D>
+double worst_distance(const RunReport& r, std::optional<D> LabelReport::*which, double D::*part) {
   double worst = kNaN;
   for (const LabelReport& l : r.labels)
     if (l.*which && !std::isnan((*(l.*which)).*part)) worst = std::isnan(worst) ? (*(l.*which)).*part : std::max(worst, (*(l.*which)).*part);
@@ -107,12 +108,22 @@ std::vector<ComparisonRow> compare(const std::vector<RunReport>& reports) {
       if (l.dice && !std::isnan(*l.dice)) least = std::isnan(least) ? *l.dice : std::min(least, *l.dice);
     return least;
   });
-  add("distance_mean_mm", "labels to mesh, mean mm", "%.3f", Better::less, distance(&LabelReport::distance_mm, &Distance::mean));
-  add("distance_p95_mm", "labels to mesh, 95 % mm", "%.3f", Better::less, distance(&LabelReport::distance_mm, &Distance::p95));
-  add("distance_max_mm", "labels to mesh, largest mm", "%.3f", Better::less, distance(&LabelReport::distance_mm, &Distance::max));
-  add("reverse_mean_mm", "mesh to labels, mean mm", "%.3f", Better::less, distance(&LabelReport::reverse_distance_mm, &Distance::mean));
-  add("reverse_p95_mm", "mesh to labels, 95 % mm", "%.3f", Better::less, distance(&LabelReport::reverse_distance_mm, &Distance::p95));
-  add("reverse_max_mm", "mesh to labels, largest mm", "%.3f", Better::less, distance(&LabelReport::reverse_distance_mm, &Distance::max));
+  add("wrong_centres_percent", "voxel centres wrong, %", "%.2f", Better::less, [](const RunReport& r) {
+    double worst = kNaN;
+    for (const LabelReport& l : r.labels)
+      if (l.wrong_centres_share && !std::isnan(*l.wrong_centres_share)) worst = std::isnan(worst) ? 100 * *l.wrong_centres_share : std::max(worst, 100 * *l.wrong_centres_share);
+    return worst;
+  });
+  add("band_mean_mm", "outside the band, mean mm", "%.4f", Better::less, distance(&LabelReport::band_distance_mm, &BandDistance::mean));
+  add("band_max_mm", "outside the band, largest mm", "%.3f", Better::less, distance(&LabelReport::band_distance_mm, &BandDistance::max));
+  add("mean_bend_deg", "mean bend, degrees", "%.1f", Better::neither, [](const RunReport& r) { return r.bends ? r.bends->mean_deg : kNaN; });
+  add("bends_above_40_percent", "edges that bend above 40 degrees, %", "%.2f", Better::less, [](const RunReport& r) { return r.bends ? 100 * r.bends->above_40_share : kNaN; });
+  add("distance_mean_mm", "labels to mesh, mean mm", "%.3f", Better::neither, distance(&LabelReport::distance_mm, &Distance::mean));
+  add("distance_p95_mm", "labels to mesh, 95 % mm", "%.3f", Better::neither, distance(&LabelReport::distance_mm, &Distance::p95));
+  add("distance_max_mm", "labels to mesh, largest mm", "%.3f", Better::neither, distance(&LabelReport::distance_mm, &Distance::max));
+  add("reverse_mean_mm", "mesh to labels, mean mm", "%.3f", Better::neither, distance(&LabelReport::reverse_distance_mm, &Distance::mean));
+  add("reverse_p95_mm", "mesh to labels, 95 % mm", "%.3f", Better::neither, distance(&LabelReport::reverse_distance_mm, &Distance::p95));
+  add("reverse_max_mm", "mesh to labels, largest mm", "%.3f", Better::neither, distance(&LabelReport::reverse_distance_mm, &Distance::max));
   add("angle_min_deg", "smallest angle", "%.2f", Better::more, surface(&SurfaceCheck::angle_min_deg));
   add("angle_median_deg", "median of smallest angles", "%.2f", Better::more, surface(&SurfaceCheck::angle_median_deg));
   add("dihedral_min_deg", "smallest dihedral", "%.2f", Better::more, volume(&VolumeCheck::dihedral_min_deg));
@@ -158,7 +169,7 @@ std::string text_summary(const RunReport& r) {
   Table labels;
   std::vector<std::string> head = {"label", "voxels mm3", "surface mm3"};
   if (tets) head.push_back("tets mm3");
-  for (const char* name : {"parts", "of", "Euler", "genus", "Dice", "mean", "95 %", "max mm", "back mean", "95 %", "max mm", "angle"}) head.push_back(name);
+  for (const char* name : {"parts", "of", "Euler", "genus", "Dice", "wrong %", "band mm", "max mm", "bend", "to faces", "95 %", "max mm", "back mean", "95 %", "max mm", "angle"}) head.push_back(name);
   if (tets) head.push_back("dihedral");
   head.push_back("thin %"), head.push_back("name");
   labels.row(head);
@@ -168,6 +179,9 @@ std::string text_summary(const RunReport& r) {
     if (tets) cells.push_back(number("%.1f", l.tet_volume_mm3));
     cells.push_back(std::to_string(l.components)), cells.push_back(number("%.0f", l.input_components));
     cells.push_back(std::to_string(l.euler)), cells.push_back(number("%.0f", l.genus)), cells.push_back(number("%.4f", l.dice));
+    cells.push_back(l.wrong_centres_share ? printed("%.2f", 100 * *l.wrong_centres_share) : "-");
+    for (const auto part : {&BandDistance::mean, &BandDistance::max}) cells.push_back(l.band_distance_mm ? printed("%.3f", (*l.band_distance_mm).*part) : "-");
+    cells.push_back(number("%.1f", l.mean_bend_deg));
     for (const auto& d : {l.distance_mm, l.reverse_distance_mm})
       for (const auto part : {&Distance::mean, &Distance::p95, &Distance::max}) cells.push_back(d ? printed("%.3f", (*d).*part) : "-");
     cells.push_back(printed("%.1f", l.angle_min_deg));

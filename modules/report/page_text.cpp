@@ -43,6 +43,11 @@ std::string distance_cells(const std::optional<Distance>& d, const char* kind) {
   return cell(d->mean, 3, kind) + cell(d->p95, 3, kind) + cell(d->max, 3, kind);
 }
 
+std::string band_cells(const std::optional<BandDistance>& d, const char* kind) {
+  if (!d) return "<td data-v=\"\">none</td><td data-v=\"\">none</td><td data-v=\"\">none</td>";
+  return cell(d->mean, 3, kind) + cell(d->max, 3, kind) + cell(100 * d->outside_share, 3);
+}
+
 std::string label_name(const LabelReport& l) { return l.name.empty() ? std::to_string(l.label) : std::to_string(l.label) + " " + l.name; }
 
 std::string row(const std::string& name, const std::string& value) {
@@ -85,11 +90,14 @@ std::string label_table(const RunReport& r, const std::vector<std::string>& colo
     std::vector<const char*> heads;
   };
   static const std::vector<Group> groups = {{"", {"Label"}},
-                                            {"Topology", {"closed", "pieces", "in input", "Euler", "genus"}},
+                                            {"Topology", {"closed", "pieces", "in input", "Euler", "genus", "touching edges"}},
                                             {"Volume, mm\xc2\xb3", {"input", "surface", "tets", "change, %"}},
-                                            {"", {"tets", "Dice"}},
-                                            {"Labels to mesh, mm", {"mean", "95 %", "max"}},
-                                            {"Mesh to labels, mm", {"mean", "95 %", "max"}},
+                                            {"", {"tets"}},
+                                            {"Voxel centres", {"Dice", "wrong", "wrong, %"}},
+                                            {"Outside the band, mm", {"mean", "max", "share, %"}},
+                                            {"Bends", {"mean, \xc2\xb0", "above 40\xc2\xb0, %"}},
+                                            {"Labels to mesh, to faces, mm", {"mean", "95 %", "max"}},
+                                            {"Mesh to labels, to faces, mm", {"mean", "95 %", "max"}},
                                             {"Smallest angle, largest dihedral, \xc2\xb0", {"triangle", "dihedral", "largest"}},
                                             {"Thickness", {"thin, %", "5 %, mm"}},
                                             {"Ends", {"low", "high"}}};
@@ -104,18 +112,22 @@ std::string label_table(const RunReport& r, const std::vector<std::string>& colo
   }
   std::string out =
       "<div class=\"table tall wide\" tabindex=\"0\" role=\"region\" aria-label=\"Figures per label\"><table class=\"sortable\"><caption>A click on a column's head sorts. Coloured figures "
-      "are those that a verdict names. Thin: share of the surface where the label is thinner than two elements.</caption><thead><tr class=\"groups\">" + tops + "</tr><tr>" + heads + "</tr></thead><tbody>\n";
+      "are those that a verdict names. Outside the band: how far the surface leaves the cells between voxel centres of different labels. Bends: angles between "
+      "neighbouring triangles, weighted by length. Distances to voxel faces are never 0 for a smooth surface and carry no verdict. Thin: share of the surface where the label is thinner than two elements.</caption><thead><tr class=\"groups\">" + tops + "</tr><tr>" + heads + "</tr></thead><tbody>\n";
   for (std::size_t k = 0; k < r.labels.size(); ++k) {
     const LabelReport& l = r.labels[k];
     const auto of = [&](const char* id) { return blame(r, id, l.label); };
-    std::optional<double> change, thin;
+    std::optional<double> change, thin, wrong, sharp;
+    if (l.wrong_centres_share) wrong = 100 * *l.wrong_centres_share;
+    if (l.bends_above_40_share) sharp = 100 * *l.bends_above_40_share;
     if (l.input_volume_mm3 && *l.input_volume_mm3 > 0) change = 100 * (l.surface_volume_mm3 / *l.input_volume_mm3 - 1);
     if (l.thin_share) thin = 100 * *l.thin_share;
     out += "<tr><th scope=\"row\" class=\"text\" data-v=\"" + std::to_string(l.label) + "\"><span class=\"swatch\" style=\"background:" + escaped(k < colours.size() ? colours[k] : "#999999") +
            "\"></span>" + escaped(label_name(l)) + "</th>" + (l.closed ? "<td class=\"text\">yes</td>" : "<td class=\"text bad\">no</td>") +
-           cell(l.components, 6, of("components")) + cell_of(l.input_components, 6) + cell(static_cast<double>(l.euler), 6) + cell_of(l.genus, 6) + cell_of(l.input_volume_mm3, 4) +
-           cell(l.surface_volume_mm3, 4) + cell_of(l.tet_volume_mm3, 4) + cell_of(change, 3, of("volume")) + cell_of(l.tets, 6) + cell_of(l.dice, 4, of("fidelity")) +
-           distance_cells(l.distance_mm, of("fidelity")) + distance_cells(l.reverse_distance_mm, of("fidelity")) + cell(l.angle_min_deg, 3, of("quality")) +
+           cell(l.components, 6, of("components")) + cell_of(l.input_components, 6) + cell(static_cast<double>(l.euler), 6) + cell_of(l.genus, 6) + cell(static_cast<double>(l.nonmanifold_edges), 6) + cell_of(l.input_volume_mm3, 4) +
+           cell(l.surface_volume_mm3, 4) + cell_of(l.tet_volume_mm3, 4) + cell_of(change, 3, of("volume")) + cell_of(l.tets, 6) + cell_of(l.dice, 4, of("fidelity")) + cell_of(l.wrong_centres, 6) +
+           cell_of(wrong, 3, of("fidelity")) + band_cells(l.band_distance_mm, of("fidelity")) + cell_of(l.mean_bend_deg) + cell_of(sharp, 3, of("roughness")) +
+           distance_cells(l.distance_mm, "") + distance_cells(l.reverse_distance_mm, "") + cell(l.angle_min_deg, 3, of("quality")) +
            cell_of(l.dihedral_min_deg, 3, of("quality")) + cell_of(l.dihedral_max_deg, 4, of("quality")) + cell_of(thin, 3, of("thickness")) + cell_of(l.thickness_p5_mm) +
            text_cell(l.cap_low) + text_cell(l.cap_high) + "</tr>\n";
   }
@@ -338,7 +350,7 @@ std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
   out += "<div class=\"table\"><table><caption>Options</caption><tbody>\n";
   for (const auto& [name, value] : r.options) out += row(name, value);
   out += "</tbody></table></div>\n<details><summary>Limits of the verdicts</summary><div class=\"table\"><table><tbody>\n";
-  for (const auto& [name, value] : named_limits(r.limits)) out += row(name, exact(value));
+  for (const auto& [name, value] : named_limits(r.limits)) out += row(name, std::isnan(value) ? "none" : exact(value));
   return out + "</tbody></table></div></details>\n</div></div>\n";
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
@@ -23,6 +24,11 @@ Json distance(const std::optional<Distance>& d) {
   return {{"mean", d->mean}, {"p95", d->p95}, {"max", d->max}};
 }
 
+Json distance(const std::optional<BandDistance>& d) {
+  if (!d) return nullptr;
+  return {{"mean", d->mean}, {"max", d->max}, {"outside_share", d->outside_share}};
+}
+
 Json surface(const RunReport& r) {
   if (!r.surface) return nullptr;
   const SurfaceCheck& s = *r.surface;
@@ -36,7 +42,9 @@ Json surface(const RunReport& r) {
           {"angle_p1_deg", s.angle_p1_deg},
           {"angle_median_deg", s.angle_median_deg},
           {"edge_min_mm", s.edge_min_mm},
-          {"edge_median_mm", s.edge_median_mm}};
+          {"edge_median_mm", s.edge_median_mm},
+          {"mean_bend_deg", r.bends ? Json(r.bends->mean_deg) : Json(nullptr)},
+          {"bends_above_40_share", r.bends ? Json(r.bends->above_40_share) : Json(nullptr)}};
 }
 
 /// Every field is there even when no volume is: null.
@@ -71,12 +79,18 @@ Json label(const LabelReport& l) {
           {"tet_volume_mm3", optional(l.tet_volume_mm3)},
           {"tets", optional(l.tets)},
           {"dice", optional(l.dice)},
+          {"wrong_centres", optional(l.wrong_centres)},
+          {"wrong_centres_share", optional(l.wrong_centres_share)},
+          {"band_distance_mm", distance(l.band_distance_mm)},
           {"distance_mm", distance(l.distance_mm)},
           {"reverse_distance_mm", distance(l.reverse_distance_mm)},
           {"caps", {{"low", l.cap_low}, {"high", l.cap_high}}},
           {"genus", optional(l.genus)},
           {"surface_area_mm2", l.surface_area_mm2},
           {"angle_min_deg", l.angle_min_deg},
+          {"nonmanifold_edges", l.nonmanifold_edges},
+          {"mean_bend_deg", optional(l.mean_bend_deg)},
+          {"bends_above_40_share", optional(l.bends_above_40_share)},
           {"dihedral_min_deg", optional(l.dihedral_min_deg)},
           {"dihedral_max_deg", optional(l.dihedral_max_deg)},
           {"thin_share", optional(l.thin_share)},
@@ -98,9 +112,13 @@ template <class L, class Visit>
 void each_limit(L& l, Visit visit) {
   visit("volume_warn_rel", l.volume_warn_rel), visit("volume_fail_rel", l.volume_fail_rel);
   visit("dice_warn", l.dice_warn), visit("dice_fail", l.dice_fail);
+  visit("wrong_centres_warn_share", l.wrong_centres_warn_share), visit("wrong_centres_fail_share", l.wrong_centres_fail_share);
+  visit("band_mean_warn_px", l.band_mean_warn_px), visit("band_mean_fail_px", l.band_mean_fail_px);
+  visit("band_max_warn_px", l.band_max_warn_px), visit("band_max_fail_px", l.band_max_fail_px);
   visit("mean_distance_warn_px", l.mean_distance_warn_px), visit("mean_distance_fail_px", l.mean_distance_fail_px);
   visit("p95_distance_warn_px", l.p95_distance_warn_px), visit("p95_distance_fail_px", l.p95_distance_fail_px);
   visit("max_distance_warn_px", l.max_distance_warn_px), visit("max_distance_fail_px", l.max_distance_fail_px);
+  visit("bends_warn_share", l.bends_warn_share);
   visit("position_warn_px", l.position_warn_px), visit("position_fail_px", l.position_fail_px);
   visit("angle_warn_deg", l.angle_warn_deg), visit("angle_fail_deg", l.angle_fail_deg);
   visit("dihedral_warn_deg", l.dihedral_warn_deg), visit("dihedral_fail_deg", l.dihedral_fail_deg);
@@ -110,9 +128,13 @@ void each_limit(L& l, Visit visit) {
   visit("small_label_voxels", l.small_label_voxels);
 }
 
+Json json_of(double value) { return value; }
+Json json_of(std::size_t value) { return value; }
+Json json_of(const std::optional<double>& value) { return optional(value); }
+
 Json limits(const Limits& l) {
   Json j = Json::object();
-  each_limit(l, [&](const char* name, const auto& value) { j[name] = value; });
+  each_limit(l, [&](const char* name, const auto& value) { j[name] = json_of(value); });
   return j;
 }
 
@@ -231,9 +253,21 @@ std::string text_of(const Json& j) { return j.dump(1, ' ', false, Json::error_ha
 
 }  // namespace
 
+namespace {
+
+double number_of(double value) { return value; }
+double number_of(std::size_t value) { return static_cast<double>(value); }
+double number_of(const std::optional<double>& value) { return value.value_or(std::numeric_limits<double>::quiet_NaN()); }
+
+void set_limit(double& limit, const Json& value) { limit = value.get<double>(); }
+void set_limit(std::size_t& limit, const Json& value) { limit = value.get<std::size_t>(); }
+void set_limit(std::optional<double>& limit, const Json& value) { limit = value.get<double>(); }
+
+}  // namespace
+
 std::vector<std::pair<std::string, double>> named_limits(const Limits& limits) {
   std::vector<std::pair<std::string, double>> named;
-  each_limit(limits, [&](const char* name, const auto& value) { named.emplace_back(name, static_cast<double>(value)); });
+  each_limit(limits, [&](const char* name, const auto& value) { named.emplace_back(name, number_of(value)); });
   return named;
 }
 
@@ -266,8 +300,9 @@ Limits read_limits(const std::string& path) {
     each_limit(limits, [&, name = key, given = value](const char* field, auto& into) {
       if (name != field) return;
       found = true;
+      if (given.is_null() && std::is_same_v<std::decay_t<decltype(into)>, std::optional<double>>) return;  // as a report lists it
       if (!given.is_number() || given.template get<double>() < 0) fail_input("the limit '" + name + "' is no number from 0", path, "give a number");
-      into = given.template get<std::decay_t<decltype(into)>>();
+      set_limit(into, given);
     });
     if (!found) fail_input("there is no limit '" + key + "'", path, "a report lists the names under limits");
   }

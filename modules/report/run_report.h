@@ -8,6 +8,7 @@
 
 #include "fem/assign_materials.h"
 #include "model/geometry.h"
+#include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_volume.h"
@@ -34,12 +35,17 @@ struct LabelReport {
   std::optional<double> tet_volume_mm3;
   std::optional<std::size_t> tets;
   std::optional<double> dice;
+  std::optional<std::size_t> wrong_centres;
+  std::optional<double> wrong_centres_share;
+  std::optional<BandDistance> band_distance_mm;
   std::optional<Distance> distance_mm, reverse_distance_mm;
   std::string cap_low, cap_high;  ///< "flat" or "round"
   std::optional<long> genus;      ///< handles of all its shells; none unless closed
   double surface_area_mm2 = 0, angle_min_deg = 0;
   std::optional<double> dihedral_min_deg, dihedral_max_deg;
   std::optional<double> thin_share, thickness_p5_mm;  ///< see check_thickness
+  std::size_t nonmanifold_edges = 0;
+  std::optional<double> mean_bend_deg, bends_above_40_share;  ///< see Bends
 };
 
 /// The mesh that `validate` judged, as its file told it.
@@ -106,6 +112,7 @@ struct RunReport {
   } stitched;
   std::string surface_level = "stitched";
   std::optional<SurfaceCheck> surface;
+  std::optional<Bends> bends;  ///< of the whole surface
   std::optional<VolumeCheck> volume;
   std::string closure = "skipped";  ///< verified, failed or skipped
   std::optional<FemReport> fem;     ///< of `fem` only
@@ -124,7 +131,7 @@ std::string to_json(const RunReport& report);
 /// Reports of several meshes against one input, with a table of them: {"schema", "command", "comparison", "meshes"}.
 std::string to_json(const std::vector<RunReport>& reports);
 
-/// Every limit by its name in the reports.
+/// Every limit by its name in the reports; NaN: none by default, and none was set.
 std::vector<std::pair<std::string, double>> named_limits(const Limits& limits);
 
 /// Limits from a JSON file of the fields that a report lists under "limits"; those left out keep their default.

@@ -18,8 +18,8 @@ struct EdgeSide {
 
 class BoundaryFinder {
  public:
-  BoundaryFinder(const InterfaceComplex& complex, std::size_t limit, Boundaries& out)
-      : complex_(complex), limit_(limit), out_(out), sides_(2 * complex.triangles.size()), fans_(6 * complex.triangles.size()) {}
+  BoundaryFinder(const InterfaceComplex& complex, std::size_t limit, bool neighbours, Boundaries& out)
+      : complex_(complex), limit_(limit), neighbours_(neighbours), out_(out), sides_(2 * complex.triangles.size()), fans_(6 * complex.triangles.size()) {}
 
   void run() {
     check_input();
@@ -138,13 +138,14 @@ class BoundaryFinder {
     std::stable_sort(group.begin(), group.end(),
                      [](const EdgeSide& a, const EdgeSide& b) { return a.row < b.row; });
     bool open = false, nonmanifold = false;
+    edge_entries_ = out_.neighbours.size();
     for (std::size_t i = 0, j = 0; i < group.size(); i = j) {
       int sum = 0;
       for (j = i; j < group.size() && group[j].row == group[i].row; ++j) sum += group[j].sign;
       LabelBoundary& label = out_.labels[group[i].row];
       ++label.edges;
       if (sum != 0) open = true, label.closed = false;
-      if (j - i > 2) nonmanifold = true, pair_across_solid(low, high, &group[i], &group[i] + (j - i));
+      if (j - i > 2) nonmanifold = true, ++label.nonmanifold_edges, pair_across_solid(low, high, &group[i], &group[i] + (j - i));
       if (j - i == 2) join(low, high, group[i], group[i + 1]);
     }
     out_.nonmanifold_edges += nonmanifold;
@@ -156,6 +157,12 @@ class BoundaryFinder {
   void join(std::int32_t low, std::int32_t high, const EdgeSide& a, const EdgeSide& b) {
     sides_.join(a.side, b.side);
     for (const std::int32_t p : {low, high}) fans_.join(corner(a.side, p), corner(b.side, p));
+    if (!neighbours_) return;
+    const std::pair<std::int32_t, std::int32_t> triangles = std::minmax(a.side / 2, b.side / 2);
+    bool first = true;
+    for (std::size_t k = edge_entries_; k < out_.neighbours.size(); ++k)
+      if (std::pair<std::int32_t, std::int32_t>(std::minmax(out_.neighbours[k].side / 2, out_.neighbours[k].other / 2)) == triangles) first = false;
+    out_.neighbours.push_back({a.row, a.side, b.side, static_cast<std::int32_t>(out_.edge_lengths_mm.size()) - 1, first});
   }
 
   std::int32_t corner(std::int32_t side, std::int32_t point) const {
@@ -252,15 +259,17 @@ class BoundaryFinder {
 
   const InterfaceComplex& complex_;
   const std::size_t limit_;
+  const bool neighbours_;
+  std::size_t edge_entries_ = 0;  // of the list of neighbours, before the edge at hand
   Boundaries& out_;
   DisjointSets sides_, fans_;  // of 2 * triangle + side, and of 3 * side + corner
 };
 
 }  // namespace
 
-Boundaries find_boundaries(const InterfaceComplex& complex, std::size_t limit) {
+Boundaries find_boundaries(const InterfaceComplex& complex, std::size_t limit, bool neighbours) {
   Boundaries result;
-  BoundaryFinder(complex, limit, result).run();
+  BoundaryFinder(complex, limit, neighbours, result).run();
   return result;
 }
 

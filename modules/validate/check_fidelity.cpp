@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "validate/band.h"
 #include "validate/boundaries.h"
 #include "validate/box_tree.h"
 #include "validate/face_rectangles.h"
@@ -43,13 +44,14 @@ double triangle_distance2(const Vec3& p, const Corners& t) {
       {segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
 }
 
-/// Distances from points to the nearest of some items; the points follow each other closely.
+/// Distances from points to the nearest of some items; the points follow each other closely. None where there are no items.
 template <class Item, class Distance2>
-Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items,
-                 const std::vector<Box>& boxes, int threads, Distance2 distance2, std::vector<std::int32_t>* nearest = nullptr) {
-  if (points.empty() || items.empty()) return {kNaN, kNaN, kNaN};
+std::vector<double> distances_of(const std::vector<Vec3>& points, const std::vector<Item>& items,
+                                 const std::vector<Box>& boxes, int threads, Distance2 distance2, std::vector<std::int32_t>* nearest = nullptr) {
+  std::vector<double> distances;
+  if (points.empty() || items.empty()) return distances;
   const BoxTree tree(boxes);
-  std::vector<double> distances(points.size());
+  distances.resize(points.size());
   if (nearest) nearest->resize(points.size());
   parallel_for((points.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
     std::int32_t hint = -1;
@@ -61,10 +63,26 @@ Distance measure(const std::vector<Vec3>& points, const std::vector<Item>& items
       if (nearest) (*nearest)[i] = hint;
     }
   });
+  return distances;
+}
+
+Distance distribution(std::vector<double> distances) {
+  if (distances.empty()) return {kNaN, kNaN, kNaN};
   Distance d;
   for (const double x : distances)
     d.mean += x / static_cast<double>(distances.size()), d.max = std::max(d.max, x);
   d.p95 = percentile(distances, 0.95);
+  return d;
+}
+
+/// What is closer to the band than a ten thousandth of a voxel is inside: files round coordinates.
+BandDistance band_distance(const std::vector<double>& distances, double rounding_mm) {
+  if (distances.empty()) return {kNaN, kNaN, kNaN};
+  BandDistance d;
+  const double n = static_cast<double>(distances.size());
+  for (const double x : distances)
+    if (x > rounding_mm) d.mean += x / n, d.max = std::max(d.max, x), d.outside_share += 1;
+  d.outside_share /= n;
   return d;
 }
 
@@ -341,6 +359,8 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
       row.input_voxels = walk.input[l];
       row.mesh_voxels = walk.mesh[l];
       const std::size_t sum = walk.input[l] + walk.mesh[l];
+      row.wrong_centres = sum - 2 * walk.both[l];
+      row.wrong_centres_share = walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
       row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
     }
     match_components(runs, complex, points, boundaries, walk, row_label, rows);
@@ -362,6 +382,12 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
     for (const std::int32_t row : boundaries.row[t])
       if (row >= 0) of_row[row].push_back(static_cast<std::int32_t>(t));
   const std::vector<std::vector<FaceStrip>> faces = find_faces(runs, labels, options.threads);
+  const std::vector<std::vector<BandStrip>> bands = find_bands(runs, labels, options.threads);
+  double wider[3] = {0, 0, 0};
+  for (int k = 0; options.band_mm && k < 3; ++k) wider[k] = std::max(0.0, 0.5 * ((*options.band_mm)[runs.axis[k]] - runs.spacing_mm[k]));
+  const Vec3 wider_mm = {wider[0], wider[1], wider[2]};
+  double rounding_mm = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) rounding_mm = std::min(rounding_mm, 1e-4 * (runs.spacing_mm[k] + 2 * wider[k]));
   for (std::size_t l = 1; l < labels; ++l) {
     LabelFidelity& row = rows[l - 1];
     std::vector<Corners> triangles;
@@ -376,11 +402,11 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
       }
     const std::vector<Vec3> from_faces = sample_faces(runs, faces[l], options.face_samples, options.seed);
     row.distance_samples = from_faces.size();
-    row.distance_mm = measure(from_faces, triangles, boxes, options.threads, triangle_distance2);
+    row.distance_mm = distribution(distances_of(from_faces, triangles, boxes, options.threads, triangle_distance2));
     if (!triangles.empty() && !faces[l].empty()) {
       const std::vector<Vec3> all_round = sample_faces(runs, faces[l], kShiftSamples, options.seed, false);
       std::vector<std::int32_t> nearest;
-      measure(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
+      distances_of(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
       const double voxel = std::max({runs.spacing_mm[0], runs.spacing_mm[1], runs.spacing_mm[2]});
       if (const auto shift = nearest.empty() ? std::nullopt : fit_shift(all_round, nearest, triangles, voxel)) {
         const double along[3] = {shift->x, shift->y, shift->z};
@@ -394,7 +420,9 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
     boxes = boxes_of(rectangles);
     const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
     row.reverse_distance_samples = from_surface.size();
-    row.reverse_distance_mm = measure(from_surface, rectangles, boxes, options.threads, rectangle_distance2);
+    row.reverse_distance_mm = distribution(distances_of(from_surface, rectangles, boxes, options.threads, rectangle_distance2));
+    const std::vector<Rectangle> band = boxes_of_band(runs, bands[l], wider_mm);
+    row.band_distance_mm = band_distance(distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
   }
   return rows;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,6 +13,14 @@ namespace stackmesh {
 /// A distribution of distances, mm; NaN where there is nothing to measure.
 struct Distance {
   double mean = 0, p95 = 0, max = 0;
+};
+
+/// How far a label's surface lies outside of its band: the cells between eight voxel centres that have a centre of the label
+/// and one of something else. Every surface that separates the centres as the labels do, and lies no further from them than it
+/// must, has distance 0 everywhere, be it stepped or smooth. NaN where there is nothing to measure.
+struct BandDistance {
+  double mean = 0, max = 0;  ///< over points spread over the surface by area, mm; 0 for those inside
+  double outside_share = 0;  ///< of the points
 };
 
 /// A part of the input that the mesh lacks, or of the mesh that the input lacks.
@@ -29,6 +38,9 @@ struct LabelFidelity {
   std::size_t input_voxels = 0;  ///< voxel centres of the label in the input
   std::size_t mesh_voxels = 0;   ///< voxel centres of the grid that lie in the label in the mesh
   double dice = 0;               ///< of those two sets; NaN when both are empty
+  std::size_t wrong_centres = 0;  ///< voxel centres that are of the label in the input or in the mesh, not in both
+  double wrong_centres_share = 0;  ///< of input_voxels; NaN when there are none
+  BandDistance band_distance_mm;
   Distance distance_mm;          ///< in-plane voxel-face centres, at section heights, to the label's surface
   Distance reverse_distance_mm;  ///< points spread over the label's surface to its voxel faces
   std::size_t distance_samples = 0, reverse_distance_samples = 0;
@@ -55,6 +67,10 @@ struct FidelityOptions {
   std::size_t face_samples = 60000;  ///< about the most voxel faces a label is measured from
   std::size_t surface_samples = 60000;  ///< most points on a label's surface; four a triangle, at least 20,000
   std::uint64_t seed = 1;               ///< of the choice among too many voxel faces
+  /// Distances of the voxel centres, along the volume's axes x, y, z, as wide as the cells of the band are taken, mm: for labels
+  /// that are stored finer than they were made, those of the true voxels. For blocks of whole voxels the band is then exactly that
+  /// of the blocks. Never below the spacing, which is the default.
+  std::optional<std::array<double, 3>> band_mm;
 };
 
 /// Compares a complex, in mm of the volume's own world frame (LPS), with the labels it was made from; a row

@@ -19,6 +19,7 @@ struct LabelSurface {
   double volume_mm3 = 0;  ///< signed, by the divergence theorem: positive when the boundary faces outwards
   double area_mm2 = 0;
   double angle_min_deg = 0;  ///< smallest of its triangles
+  std::size_t nonmanifold_edges = 0;  ///< where more than two triangles bound it: it touches itself there
 };
 
 /// What a complex is like; angles and edges of an empty one are 0.

@@ -7,7 +7,7 @@
 
 namespace stackmesh {
 
-/// An axis-parallel rectangle, along W, U, V of the runs: a box of no thickness.
+/// An axis-parallel box along W, U, V of the runs; a rectangle where it has no thickness along one of them.
 struct Rectangle {
   Vec3 low, high;
 };

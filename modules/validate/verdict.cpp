@@ -17,6 +17,9 @@ std::string counted(std::size_t n, const char* one, const char* many) { return s
 
 Status above(double value, double warn, double fail) { return value > fail ? Status::fail : value > warn ? Status::warn : Status::pass; }
 Status below(double value, double warn, double fail) { return value < fail ? Status::fail : value < warn ? Status::warn : Status::pass; }
+Status above(double value, const std::optional<double>& warn, const std::optional<double>& fail) {
+  return fail && value > *fail ? Status::fail : warn && value > *warn ? Status::warn : Status::pass;
+}
 void worsen(Status& status, Status other) { status = std::max(status, other); }
 
 class Judge {
@@ -27,6 +30,7 @@ class Judge {
     if (in_.surface) closed(), intersections();
     if (in_.volume && in_.volume->tets > 0) orientation(), conforming();
     if (in_.fidelity && !in_.fidelity->empty()) components(), volume(), position(), fidelity();
+    if (in_.bends && in_.bends->surface.edges > 0) roughness();
     if (in_.surface) quality();
     if (in_.thickness && !in_.thickness->empty()) thickness();
     return std::move(verdicts_);
@@ -229,21 +233,30 @@ class Judge {
   void fidelity() {
     Verdict& v = add("fidelity", "Fidelity");
     std::vector<Row> rows;
-    double dice = 2, mean = 0, p95 = 0, most = 0;
+    double dice = 2, wrong = 0, band_mean = 0, band_max = 0, outside = 0, mean = 0, p95 = 0, most = 0;
     bool measured = false;
     for (const LabelFidelity& f : *in_.fidelity) {
       if (f.input_voxels == 0) continue;
-      Status status = below(std::isnan(f.dice) ? 0 : f.dice, l_.dice_warn, l_.dice_fail);
-      double badness = 1 - (std::isnan(f.dice) ? 0 : f.dice);
-      dice = std::min(dice, std::isnan(f.dice) ? 0 : f.dice);
+      const double own_dice = std::isnan(f.dice) ? 0 : f.dice;
+      Status status = below(own_dice, l_.dice_warn, l_.dice_fail);
+      worsen(status, above(f.wrong_centres_share, l_.wrong_centres_warn_share, l_.wrong_centres_fail_share));
+      double badness = f.wrong_centres_share;
+      dice = std::min(dice, own_dice), wrong = std::max(wrong, f.wrong_centres_share);
+      const BandDistance& band = f.band_distance_mm;
+      if (!std::isnan(band.mean) && in_.voxel_mm > 0) {
+        measured = true;
+        const double m = band.mean / in_.voxel_mm, x = band.max / in_.voxel_mm;
+        band_mean = std::max(band_mean, m), band_max = std::max(band_max, x), outside = std::max(outside, band.outside_share);
+        worsen(status, above(m, l_.band_mean_warn_px, l_.band_mean_fail_px));
+        worsen(status, above(x, l_.band_max_warn_px, l_.band_max_fail_px));
+        badness += m;
+      }
       const auto distance = [&](const Distance& d, double unit) {
         if (std::isnan(d.mean) || !(unit > 0)) return;
-        measured = true;
         mean = std::max(mean, d.mean / unit), p95 = std::max(p95, d.p95 / unit), most = std::max(most, d.max / unit);
         worsen(status, above(d.mean / unit, l_.mean_distance_warn_px, l_.mean_distance_fail_px));
         worsen(status, above(d.p95 / unit, l_.p95_distance_warn_px, l_.p95_distance_fail_px));
         worsen(status, above(d.max / unit, l_.max_distance_warn_px, l_.max_distance_fail_px));
-        badness += d.mean / unit;
       };
       distance(f.distance_mm, in_.pixel_mm);
       distance(f.reverse_distance_mm, in_.voxel_mm);
@@ -251,13 +264,39 @@ class Judge {
       rows.push_back({f.label, status, badness});
     }
     take(v, rows);
-    v.figure = text_of("Dice %.4f", dice > 1 ? 0 : dice);
-    if (measured) v.figure += text_of(", distance mean %.2f", mean) + text_of(", 95 %% %.2f", p95) + text_of(", largest %.2f px", most);
-    v.limit = text_of("Dice %g", l_.dice_warn) + text_of(" (fail %g)", l_.dice_fail) + text_of("; mean %g", l_.mean_distance_warn_px) +
-              text_of(" (%g)", l_.mean_distance_fail_px) + text_of(", 95 %% %g", l_.p95_distance_warn_px) + text_of(" (%g)", l_.p95_distance_fail_px) +
-              text_of(", largest %g", l_.max_distance_warn_px) + text_of(" (%g) px", l_.max_distance_fail_px);
-    v.explanation = "Worst label: overlap of voxel centres, and distances between the mesh and the voxels' boundary both ways, in pixels" +
-                    text_of(" (of %.3g mm; mesh to labels", in_.pixel_mm) + text_of(": voxels of %.3g mm).", in_.voxel_mm) + blame(v.labels);
+    v.figure = text_of("Dice %.4f", dice > 1 ? 0 : dice) + text_of(", %.2f %% of voxel centres wrong", 100 * wrong);
+    if (measured)
+      v.figure += text_of("; outside the band by %.3f on average", band_mean) + text_of(", at most %.2f voxels", band_max) + text_of(" (%.1f %% of the surface)", 100 * outside);
+    v.limit = text_of("Dice %g", l_.dice_warn) + text_of(" (fail %g)", l_.dice_fail) + text_of("; wrong %g", 100 * l_.wrong_centres_warn_share) +
+              text_of(" (%g) %%", 100 * l_.wrong_centres_fail_share) + text_of("; band mean %g", l_.band_mean_warn_px) + text_of(" (%g)", l_.band_mean_fail_px) +
+              text_of(", largest %g", l_.band_max_warn_px) + text_of(" (%g) voxels", l_.band_max_fail_px);
+    const auto asked = [&](const char* name, const char* figure, double value, const std::optional<double>& warn, const std::optional<double>& fail) {
+      if (!warn && !fail) return;
+      v.figure += text_of(figure, value);
+      v.limit += std::string("; ") + name + (warn ? text_of(" %g", *warn) : "") + (fail ? text_of(" (%g)", *fail) : "") + " px";
+    };
+    asked("to faces, mean", "; to voxel faces %.2f px on average", mean, l_.mean_distance_warn_px, l_.mean_distance_fail_px);
+    asked("to faces, 95 %", "; 95 %% within %.2f px", p95, l_.p95_distance_warn_px, l_.p95_distance_fail_px);
+    asked("to faces, largest", "; at most %.2f px", most, l_.max_distance_warn_px, l_.max_distance_fail_px);
+    v.explanation = "Worst label: voxel centres that are in the wrong label, and how far the surface leaves the cells between voxel centres of different labels" +
+                    text_of(" (voxels of %.3g mm).", in_.voxel_mm) + " A surface that parts the centres as the labels do has none of both, be it stepped or smooth." + blame(v.labels);
+  }
+
+  void roughness() {
+    Verdict& v = add("roughness", "Smooth");
+    std::vector<Row> rows;
+    double worst = 0;
+    Label worst_label = 0;
+    for (const LabelBends& b : in_.bends->labels) {
+      if (b.bends.edges == 0) continue;
+      if (worst_label == 0 || b.bends.above_40_share > worst) worst = b.bends.above_40_share, worst_label = b.label;
+      rows.push_back({b.label, above(b.bends.above_40_share, l_.bends_warn_share, 2.0), b.bends.above_40_share});
+    }
+    take(v, rows);
+    v.figure = text_of("mean bend %.1f degrees", in_.bends->surface.mean_deg) + text_of("; %.1f %% of the edges bend by more than 40", 100 * worst);
+    if (worst_label != 0 && rows.size() > 1) v.figure += ", " + name(worst_label);
+    v.limit = text_of("warn above %g %%", 100 * l_.bends_warn_share);
+    v.explanation = "Angles between neighbouring triangles of a label's surface: steps of voxels make many sharp ones, and stresses there are those of the steps." + blame(v.labels);
   }
 
   void quality() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/label_volume.h"
+#include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_thickness.h"
@@ -18,7 +19,7 @@ const char* to_text(Status status);
 
 /// One line at the head of a report: a figure against its limit, in words.
 struct Verdict {
-  std::string id;     ///< closed, intersections, orientation, conforming, components, volume, position, fidelity, quality, thickness
+  std::string id;     ///< closed, intersections, orientation, conforming, components, volume, position, fidelity, roughness, quality, thickness
   std::string title;  ///< "Closed"
   std::string figure;       ///< "0 open edges"
   std::string limit;        ///< "none allowed"
@@ -49,10 +50,16 @@ struct Defect {
 struct Limits {
   double volume_warn_rel = 0.02, volume_fail_rel = 0.10;  ///< of a label, mesh against voxels
   double dice_warn = 0.95, dice_fail = 0.85;              ///< least of any label
-  /// Mean distance both ways, in units of the in-plane pixel (labels to mesh) or the largest spacing (mesh to labels).
-  double mean_distance_warn_px = 0.5, mean_distance_fail_px = 1.0;
-  double p95_distance_warn_px = 1.0, p95_distance_fail_px = 2.0;
-  double max_distance_warn_px = 3.0, max_distance_fail_px = 10.0;  ///< Hausdorff
+  double wrong_centres_warn_share = 0.10, wrong_centres_fail_share = 0.30;  ///< of a label's voxel centres
+  /// How far a label's surface is outside of its band (see BandDistance), in units of the largest spacing.
+  double band_mean_warn_px = 0.1, band_mean_fail_px = 0.5;
+  double band_max_warn_px = 2.0, band_max_fail_px = 10.0;
+  /// Distances to voxel faces both ways have no limits unless they are set: they punish a smooth surface for being smooth. In units
+  /// of the in-plane pixel (labels to mesh) or the largest spacing (mesh to labels).
+  std::optional<double> mean_distance_warn_px, mean_distance_fail_px;
+  std::optional<double> p95_distance_warn_px, p95_distance_fail_px;
+  std::optional<double> max_distance_warn_px, max_distance_fail_px;  ///< Hausdorff
+  double bends_warn_share = 0.10;  ///< of a label's edges, those that bend by more than 40 degrees; never fails
   double position_warn_px = 0.25, position_fail_px = 0.75;  ///< offset of the whole mesh along an axis, in voxels
   double angle_warn_deg = 10, angle_fail_deg = 0.5;         ///< smallest angle of a triangle
   double dihedral_warn_deg = 8, dihedral_fail_deg = 0.5;    ///< smallest dihedral of a tet
@@ -60,7 +67,7 @@ struct Limits {
   double jacobian_warn = 0.05, jacobian_fail = 0.005;       ///< smallest scaled Jacobian of a tet
   double thin_warn_share = 0.05;  ///< share of a label's surface whose thickness is below `thin_elements`; never fails
   double thin_elements = 2;
-  std::size_t small_label_voxels = 200;  ///< below, volume, Dice and distances of a label warn at most
+  std::size_t small_label_voxels = 200;  ///< below, volume, voxel centres and distances of a label warn at most
 };
 
 /// What is judged. Pointers may be null: what they tell is then not judged.
@@ -69,6 +76,7 @@ struct JudgeInput {
   const VolumeCheck* volume = nullptr;
   const std::vector<LabelFidelity>* fidelity = nullptr;
   const std::vector<LabelThickness>* thickness = nullptr;
+  const BendCheck* bends = nullptr;
   std::vector<LabelInfo> labels;                   ///< of the input, without the background; names for texts
   std::vector<double> input_volume_mm3;            ///< beside `labels`; empty: unknown
   double pixel_mm = 1, voxel_mm = 1;               ///< smallest in-plane and largest spacing

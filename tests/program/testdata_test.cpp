@@ -270,7 +270,9 @@ void expect_report(const Json& r, bool grid, bool filled) {
                  {"angle_p1_deg", "n"},
                  {"angle_median_deg", "n"},
                  {"edge_min_mm", "n"},
-                 {"edge_median_mm", "n"}},
+                 {"edge_median_mm", "n"},
+                 {"mean_bend_deg", "n"},
+                 {"bends_above_40_share", "n"}},
                 "surface");
   const std::string level = r.at("surface").at("level");
   EXPECT_TRUE(level == "enhanced" || level == "smoothed" || level == "stitched") << level;
@@ -299,10 +301,17 @@ void expect_report(const Json& r, bool grid, bool filled) {
                    {"tet_volume_mm3", number},
                    {"tets", integer},
                    {"dice", of_grid},
+                   {"wrong_centres", grid ? "i" : "0"},
+                   {"wrong_centres_share", of_grid},
+                   {"band_distance_mm", grid ? "o" : "0"},
+                   {"nonmanifold_edges", "i"},
+                   {"mean_bend_deg", "n"},
+                   {"bends_above_40_share", "n"},
                    {"distance_mm", grid ? "o" : "0"},
                    {"reverse_distance_mm", grid ? "o" : "0"},
                    {"caps", "o"}},
                   "labels");
+    if (grid) expect_fields(l.at("band_distance_mm"), {{"mean", "n"}, {"max", "n"}, {"outside_share", "n"}}, "band_distance_mm");
     if (grid)
       for (const char* d : {"distance_mm", "reverse_distance_mm"}) {
         expect_fields(l.at(d), {{"mean", "n"}, {"p95", "n"}, {"max", "n"}}, d);

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <set>
 
 #include "program.h"
 
@@ -49,6 +50,13 @@ TEST_F(Validate, JudgesOurOwnMeshAndTheReportHasTheContractsFieldsAndMore) {
   for (const Json& row : r["labels"]) {
     EXPECT_TRUE(row["closed"].get<bool>());
     EXPECT_GT(row["dice"].get<double>(), 0.9);
+    EXPECT_GT(row["wrong_centres"].get<int>(), 0);
+    EXPECT_LT(row["wrong_centres_share"].get<double>(), 0.2);
+    for (const char* key : {"mean", "max", "outside_share"}) EXPECT_GE(row["band_distance_mm"][key].get<double>(), 0) << key;
+    EXPECT_LT(row["band_distance_mm"]["mean"].get<double>(), row["reverse_distance_mm"]["mean"].get<double>());
+    EXPECT_GT(row["mean_bend_deg"].get<double>(), 0);
+    EXPECT_LE(row["bends_above_40_share"].get<double>(), 1);
+    EXPECT_LE(row["nonmanifold_edges"], r["surface"]["nonmanifold_edges"]);
     EXPECT_NEAR(row["tet_volume_mm3"].get<double>(), row["surface_volume_mm3"].get<double>(), 1e-6 * row["surface_volume_mm3"].get<double>());
   }
   for (const Json& v : r["verdicts"]) {
@@ -69,7 +77,7 @@ TEST_F(Validate, FiguresEqualThoseOfTheRunThatMadeTheMesh) {
     for (const auto& [key, value] : made[part].items())
       if (value.is_number() && key != "scaled_jacobian_min") { EXPECT_NEAR(value.get<double>(), r[part][key].get<double>(), 1e-6 * (1 + value.get<double>())) << key; }
   for (std::size_t i = 0; i < made["labels"].size(); ++i)
-    for (const char* key : {"dice", "surface_volume_mm3", "components", "euler"})
+    for (const char* key : {"dice", "surface_volume_mm3", "components", "euler", "wrong_centres", "mean_bend_deg", "bends_above_40_share"})
       EXPECT_NEAR(made["labels"][i][key].get<double>(), r["labels"][i][key].get<double>(), 1e-6 * (1 + made["labels"][i][key].get<double>())) << key;
 }
 
@@ -81,6 +89,15 @@ TEST_F(Validate, LimitsOfAFileDecideBetweenPassAndExit6) {
   EXPECT_NE(ended.err.find("valid but outside a limit: Fidelity"), std::string::npos) << ended.err;
   EXPECT_EQ(report()["limits"]["dice_fail"], 1.0);
   EXPECT_EQ(report()["verdict"], "fail");
+  // Distances to voxel faces have limits only where they are given; a report's own limits can be read back.
+  EXPECT_TRUE(report()["limits"]["mean_distance_fail_px"].is_null());
+  Json limits = report()["limits"];
+  limits["dice_warn"] = limits["dice_fail"] = 0;
+  EXPECT_EQ(program::stackmesh({"validate", mesh, "--against", heart_, "--limits", write("same.json", limits.dump()), "--quiet"}).code, 0);
+  limits["mean_distance_fail_px"] = 0.001;
+  const program::Ended far = program::stackmesh({"validate", mesh, "--against", heart_, "--limits", write("faces.json", limits.dump()), "--quiet"});
+  EXPECT_EQ(far.code, 6);
+  EXPECT_NE(far.err.find("to voxel faces"), std::string::npos) << far.err;
   fails(3, {"validate", mesh, "--limits", write("bad.json", "{\"dise\": 1}")}, {"no limit 'dise'"}, {"R.json"});
   fails(3, {"validate", mesh, "--limits", write("none.json", "[")}, {"no JSON object"}, {"R.json"});
 }
@@ -108,12 +125,18 @@ TEST_F(Validate, ComparesSeveralMeshesInOneTable) {
   EXPECT_NE(ended.out.find("* best of its row"), std::string::npos);
   const Json r = report();
   ASSERT_EQ(r["meshes"].size(), 2u);
-  for (const Json& row : r["comparison"]["rows"])
-    if (row["id"] == "distance_mean_mm") {
+  std::set<std::string> ids;
+  for (const Json& row : r["comparison"]["rows"]) {
+    const std::string id = row["id"];
+    ids.insert(id);
+    if (id == "distance_mean_mm") { EXPECT_TRUE(row["best"].empty()) << "a staircase always wins it"; }
+    if (id == "wrong_centres_percent" || id == "bends_above_40_percent") {
       const double first = row["values"][0].get<double>(), second = row["values"][1].get<double>();
       ASSERT_NE(first, second);
       EXPECT_EQ(row["best"], Json::array({first < second ? 0 : 1}));
     }
+  }
+  for (const char* id : {"distance_mean_mm", "wrong_centres_percent", "band_mean_mm", "band_max_mm", "mean_bend_deg", "bends_above_40_percent"}) EXPECT_EQ(ids.count(id), 1u) << id;
 }
 
 TEST_F(Validate, AgainstContourFilesFidelityIsNull) {
@@ -193,7 +216,7 @@ TEST_F(Validate, NoPatientFieldOfAHeaderReachesAReport) {
     const program::Ended ended = program::stackmesh({"validate", out("m.vtu"), "--against", in(name), "--report", out("R.json")});
     EXPECT_EQ(ended.code, 0) << ended.err;
     for (const std::string& text : {program::read_file(out("M.json")), program::read_file(out("R.json")), ended.out, ended.err, program::read_file(out("m.vtu"))})
-      for (const char* secret : {"DOE", "JANE", "1961", "MRN4711"}) EXPECT_EQ(text.find(secret), std::string::npos) << name << ": " << secret;
+      for (const char* secret : {"DOE", "JANE", "1961-02", "19610203", "MRN4711"}) EXPECT_EQ(text.find(secret), std::string::npos) << name << ": " << secret;
   }
 }
 

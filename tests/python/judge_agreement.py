@@ -4,7 +4,7 @@
 usage: judge_agreement.py SURFACE LABELS.nii[.gz] LABEL REPORT.json [--space lps|ras]
 
 Compared to 1 %: Dice of voxel centres (vtkPolyDataToImageStencil), distances both ways (mean, 95 %; vtkStaticCellLocator against all
-voxel faces), volume, and the number of pairs of triangles that cross (VTK's triangle-triangle test for pairs that share nothing,
+voxel faces), volume, distance outside the band (cells of the dual grid as VTK quads), wrong centres, bends, and the number of pairs of triangles that cross (VTK's triangle-triangle test for pairs that share nothing,
 numpy for those that share a corner). Shares no code with stackmesh. Exit 0 agrees, 1 does not, 77 without VTK or nibabel.
 """
 import argparse
@@ -74,6 +74,43 @@ def face_quads(mask):
         quads.append(corners)
         axes += [axis] * len(corners)
     return np.concatenate(quads), np.array(axes)
+
+
+def outside_band(points_index, mask, spacing):
+    """Distances in mm from the cells between eight centres of which some, not all, are in the label."""
+    padded = np.pad(mask, 1)
+    n = sum(padded[i:padded.shape[0] - 1 + i, j:padded.shape[1] - 1 + j, k:padded.shape[2] - 1 + k].astype(int) for i in (0, 1) for j in (0, 1) for k in (0, 1))
+    mixed = (n > 0) & (n < 8)  # [i, j, k] lies between the centres i - 1 and i
+    at = np.floor(points_index).astype(int) + 1
+    known = ((at >= 0) & (at < mixed.shape)).all(1)
+    out = np.ones(len(points_index), bool)
+    out[known] = ~mixed[tuple(at[known].T)]
+    cells = np.argwhere(mixed) - 1.0
+    corner = np.array([[c & 1, c >> 1 & 1, c >> 2] for c in range(8)], float)
+    sides = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]]
+    quads = np.concatenate([cells[:, None, :] + corner[side] for side in sides]) * spacing
+    d = np.zeros(len(points_index))
+    d[out] = distances(points_index[out] * spacing, poly_data(quads.reshape(-1, 3), np.arange(4 * len(quads)).reshape(-1, 4)))
+    return d
+
+
+def bends(points, triangles):
+    """(mean angle between neighbours weighted by length, share above 40 degrees) over edges of two triangles."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    size = np.linalg.norm(normals, axis=1)
+    normals /= np.where(size > 0, size, 1)[:, None]
+    edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), 1)
+    of = np.tile(np.arange(len(triangles)), 3)
+    order = np.lexsort(edges.T)
+    edges, of = edges[order], of[order]
+    first = np.flatnonzero(np.r_[True, (edges[1:] != edges[:-1]).any(1)])
+    two = first[np.diff(np.r_[first, len(edges)]) == 2]
+    m, n = of[two], of[two + 1]
+    good = (size[m] > 0) & (size[n] > 0)
+    m, n, e = m[good], n[good], edges[two][good]
+    bend = np.degrees(np.arccos(np.clip((normals[m] * normals[n]).sum(1), -1, 1)))
+    return np.average(bend, weights=np.linalg.norm(points[e[:, 0]] - points[e[:, 1]], axis=1)), (bend > 40).mean()
 
 
 def crossing_pairs(points, triangles):
@@ -164,7 +201,10 @@ def main():
     uv = rng.random((len(pick), 2))
     uv[uv.sum(1) > 1] = 1 - uv[uv.sum(1) > 1]
     t = mm[triangles[pick]]
-    back = distances(t[:, 0] + uv[:, :1] * (t[:, 1] - t[:, 0]) + uv[:, 1:] * (t[:, 2] - t[:, 0]), boundary)
+    spread = t[:, 0] + uv[:, :1] * (t[:, 1] - t[:, 0]) + uv[:, 1:] * (t[:, 2] - t[:, 0])
+    back = distances(spread, boundary)
+    band = outside_band(spread / spacing, mask, spacing)
+    bend, sharp = bends(points, triangles)
 
     a, b, c = (points[triangles[:, k]] for k in range(3))
     volume = abs(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
@@ -184,6 +224,11 @@ def main():
     # 20,000 points of a shaken surface: three standard errors of their mean
     compare("mesh to labels, mean", back.mean(), row["reverse_distance_mm"]["mean"], 0.016)
     compare("mesh to labels, 95 %", np.quantile(back, 0.95), row["reverse_distance_mm"]["p95"])
+    compare("wrong centres", (inside ^ mask).sum(), row["wrong_centres"], 0.1, 0.002 * mask.sum())
+    compare("outside the band, mean", band.mean(), row["band_distance_mm"]["mean"], 0.05, 0.0005)  # 20,000 points: three standard errors
+    compare("outside the band, share", (band > 1e-4).mean(), row["band_distance_mm"]["outside_share"], 0.03, 0.002)
+    compare("bends, mean", bend, row["mean_bend_deg"])
+    compare("bends above 40, share", sharp, row["bends_above_40_share"])
     compare("crossing pairs", crossing_pairs(points, triangles), report["surface"]["self_intersections"], 0.01, 0)
     sys.exit(1 if failed else 0)
 

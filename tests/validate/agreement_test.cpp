@@ -22,7 +22,7 @@ int run(const std::string& command) {
 
 void agrees(const std::string& surface, const std::string& labels, const std::string& label, const std::string& space) {
   const std::string report = folder() + "/agreement.json";
-  const int code = run(std::string(STACKMESH_PROGRAM) + " validate " + surface + " --against " + labels + " --label " + label + " --mesh-space " + space + " --report " + report +
+  const int code = run(std::string(STACKMESH_PROGRAM) + " validate " + surface + " --against " + labels + " --label " + label + " --as-stored --mesh-space " + space + " --report " + report +
                        " --quiet 2>/dev/null");
   ASSERT_TRUE(code == 0 || code == 4 || code == 6) << code;
   const int verdict = run("/usr/bin/python3 " STACKMESH_SOURCE_DIR "/tests/python/judge_agreement.py " + surface + " " + labels + " " + label + " " + report + " --space " + space);
