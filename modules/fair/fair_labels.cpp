@@ -12,7 +12,7 @@ namespace {
 using namespace fair;
 
 constexpr double kVirtualBand_px = 1, kVirtualBand_gaps = 1.5;  // of slices that are a guess only
-constexpr int kReach = 64, kRounds = 2;  // of restoring volumes: steps of averaging, rounds
+constexpr int kReach = 40, kRounds = 2;  // of restoring volumes: steps of averaging, rounds
 constexpr float kApart = 0.1F;  // of two contours that pass a corner, from the diagonal between them (times the root of 2), in pixels
 
 /// Moves a vertex to its own side of the diagonal between two contours; (sx, sy) points there.

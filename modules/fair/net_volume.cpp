@@ -13,6 +13,8 @@ Float3 cross(const Float3& a, const Float3& b) {
 }
 float dot(const Float3& a, const Float3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+constexpr float kNeighbours = 0.8F;  // share of the neighbours in a step of averaging
+
 /// In voxels of their own axis, where the ratio of volume and area vector is right in any metric.
 class LocalVolumes {
  public:
@@ -36,6 +38,26 @@ class LocalVolumes {
       weight[a] = static_cast<float>(largest * largest / (net_.spacing_mm[a] * net_.spacing_mm[a]));
       h[a] = static_cast<float>(net_.spacing_mm[a] / largest);
     }
+    // A step of averaging takes most of the neighbours' mean; only vertices of one sheet count.
+    struct Mean {
+      std::array<std::int32_t, kDirections> next;
+      std::array<float, kDirections> share;
+      float own;
+    };
+    std::vector<Mean> means(n_);
+    for_each_index(n_, threads_, [&](std::size_t v) {
+      Mean& m = means[v];
+      float total = 0;
+      for (int d = 0; d < kDirections; ++d) {
+        const std::int32_t w = net_.next[v][d];
+        const bool counts = !net_.curve[v] && w >= 0 && !net_.curve[w];
+        m.next[d] = counts ? w : static_cast<std::int32_t>(v);
+        m.share[d] = counts ? weight[d / 2] : 0;
+        total += m.share[d];
+      }
+      for (float& x : m.share) x *= total > 0 ? kNeighbours / total : 0;
+      m.own = total > 0 ? 1 - kNeighbours : 1;
+    });
     std::vector<Float3> normal(n_);
     for (int round = 0; round < rounds; ++round) {
       for_each_index(n_, threads_, [&](std::size_t v) {
@@ -54,17 +76,12 @@ class LocalVolumes {
       });
       for (int step = 0; step < reach; ++step) {
         for_each_index(n_, threads_, [&](std::size_t v) {
-          if (net_.curve[v]) return;
-          std::array<float, 2> sum = {0, 0};
-          float total = 0;
-          for (int d = 0; d < kDirections; ++d) {
-            const std::int32_t w = net_.next[v][d];
-            if (w < 0 || net_.curve[w]) continue;
-            for (int i = 0; i < 2; ++i) sum[i] += weight[d / 2] * sums[w][i];
-            total += weight[d / 2];
-          }
-          for (int i = 0; i < 2; ++i) next[v][i] = total > 0 ? 0.5F * (sums[v][i] + sum[i] / total) : sums[v][i];
-        });
+          const Mean& m = means[v];
+          std::array<float, 2> sum = {m.own * sums[v][0], m.own * sums[v][1]};
+          for (int d = 0; d < kDirections; ++d)
+            for (int i = 0; i < 2; ++i) sum[i] += m.share[d] * sums[m.next[d]][i];
+          next[v] = sum;
+        }, 4096);
         std::swap(sums, next);
       }
       for_each_index(n_, threads_, [&](std::size_t v) {
