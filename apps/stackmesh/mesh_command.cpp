@@ -31,6 +31,8 @@ struct MeshArguments {
   std::string max_volume;
   double radius_edge = 0, dihedral = 0;
   int order = 1;
+  int keep_largest = 1;
+  double min_piece_mm3 = 0;
   bool strict = false, per_label = false, msh2 = false, yes = false;
   std::string return_parameters;  // of 3D Slicer
 };
@@ -47,7 +49,9 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       ->allow_extra_args(false);
   a.contours.add_to(command);
   command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
-  command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round")->capture_default_str();
+  command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round, per end 1:high=flat,low=round")->capture_default_str();
+  command.add_option("--keep-largest", a.keep_largest, "only the largest piece of each label, or the N largest")->expected(0, 1)->check(CLI::Range(1, 1000000));
+  command.add_option("--min-piece", a.min_piece_mm3, "no piece of a label that is smaller, mm3")->check(positive);
   command.add_option("--space", a.space, "world frame of what is written: lps or ras")->capture_default_str();
   command.add_flag("--per-label", a.per_label, "surfaces: NAME_<label>.EXT for each label");
   command.add_flag("--strict", a.strict, "a fallback or a lost detail is exit 4");
@@ -92,6 +96,8 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.threads = a.contours.threads;
   o.stitch.snap_mm = a.snap_mm;
   parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
+  if (command.get_option("--keep-largest")->count() > 0) o.pieces.keep_largest = a.keep_largest;
+  if (a.min_piece_mm3 > 0) o.pieces.min_piece_mm3 = a.min_piece_mm3;
   o.order = a.order;
   o.many_tets = a.yes;
   if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.fill.max_volume_mm3);
@@ -139,6 +145,8 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"as_stored", o.sections.as_stored ? "on" : "off"},
                     {"snap_mm", text_of(a.snap_mm)},
                     {"caps", a.caps},
+                    {"keep_largest", o.pieces.keep_largest ? std::to_string(*o.pieces.keep_largest) : "all"},
+                    {"min_piece_mm3", o.pieces.min_piece_mm3 ? text_of(*o.pieces.min_piece_mm3) : "unset"},
                     {"interpolate", e.interpolate},
                     {"enhance", o.enhance ? "on" : "off"},
                     {"smooth", std::to_string(e.smooth)},

@@ -144,15 +144,34 @@ std::optional<int> parse_interpolate(const std::string& text) {
   return std::stoi(text);
 }
 
-void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label) {
+void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, LabelEndCaps>>& per_label) {
   if (text.find('=') == std::string::npos) {
     all = caps_named(text);
     return;
   }
+  const auto ends_of = [&](const std::string& label) -> LabelEndCaps& {
+    for (auto& [l, caps] : per_label)
+      if (l == label) return caps;
+    per_label.emplace_back(label, LabelEndCaps{});
+    return per_label.back().second;
+  };
+  std::string of_ends;  // the label whose ends were named last
   for (const std::string& item : split(text, ',')) {
     const std::size_t at = item.find('=');
-    if (at == std::string::npos || at == 0) fail_usage("'" + item + "' names no label", "--caps " + text, "write --caps 5=flat,9=round");
-    per_label.emplace_back(item.substr(0, at), caps_named(item.substr(at + 1)));
+    if (at == std::string::npos || at == 0)
+      fail_usage("'" + item + "' names no label", "--caps " + text, "write --caps 5=flat,9=round, or --caps 1:high=flat,low=round for either end");
+    const std::string left = item.substr(0, at);
+    const Caps caps = caps_named(item.substr(at + 1));
+    const std::size_t colon = left.rfind(':');
+    const std::string end = colon == std::string::npos ? left : left.substr(colon + 1);
+    const bool names_end = (end == "low" || end == "high") && (colon != std::string::npos ? colon > 0 : !of_ends.empty());
+    if (!names_end) {
+      per_label.emplace_back(left, LabelEndCaps{caps, caps});
+      of_ends.clear();
+      continue;
+    }
+    if (colon != std::string::npos) of_ends = left.substr(0, colon);
+    (end == "low" ? ends_of(of_ends).low : ends_of(of_ends).high) = caps;
   }
 }
 

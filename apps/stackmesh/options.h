@@ -55,8 +55,9 @@ std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text,
 /// "auto" (no value) or a whole number from 0 to 1000. @throws Error(usage)
 std::optional<int> parse_interpolate(const std::string& text);
 
-/// "auto", "flat", "round", or per label "5=flat,9=round". @throws Error(usage)
-void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, Caps>>& per_label);
+/// "auto", "flat", "round", or per label "5=flat,9=round", or per label and end "1:high=flat,low=round" (an end that is not named is
+/// automatic). @throws Error(usage)
+void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, LabelEndCaps>>& per_label);
 
 /// A warning as a line on stderr.
 void print_warnings(const std::vector<std::string>& warnings);

@@ -29,6 +29,7 @@ constexpr std::size_t kSamples = 20000;   // of the stitched surface, to tell it
 constexpr double kSmoothingCost = 0.031;  // pixels of mean distance for which the steps of single voxels go
 constexpr double kSheetGap = 0.2;         // of the edge length: what sheets keep apart in the end, where small moves allow it
 constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
+constexpr double kDrawnCorner_deg = 35;
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
 std::string number(double x) {
@@ -58,7 +59,7 @@ class Enhancement {
     shell_ = shell_sizes(mesh, &shells_);
     samples_ = sample_surface(mesh, kSamples);
     result_.complex = stitched_;
-    result_.counts.ridge_edges = mark_ridges(mesh, o_.feature_deg, 8 * std::max(o_.pixel_mm, o_.gap_mm), o_.threads);
+    result_.counts.ridge_edges = mark_ridges(mesh, ridges());
     wall_reach_ = std::max(2 * o_.pixel_mm, o_.edge_length_mm.value_or(6 * o_.pixel_mm));
     wall_ = wall_thickness(mesh, wall_reach_, o_.threads);
     if (o_.faired != nullptr) {
@@ -128,6 +129,18 @@ class Enhancement {
           why = "label " + std::to_string(label) + " went from " + text(was) + " to " + text(is);
     warn("the " + std::string(level) + " surface was given up: " + why);
     return false;
+  }
+
+  RidgeOptions ridges() const {
+    RidgeOptions r;
+    r.feature_deg = o_.feature_deg;
+    r.length_mm = 8 * std::max(o_.pixel_mm, o_.gap_mm);
+    r.threads = o_.threads;
+    if (!(o_.drawn_gap_mm > 0)) return r;
+    r.upright_deg = kDrawnCorner_deg;
+    r.upright_length_mm = 1.9 * o_.drawn_gap_mm;
+    r.upright_reach_mm = 2 * o_.pixel_mm;
+    return r;
   }
 
   void smooth_mesh(ComplexMesh& mesh) {
@@ -357,7 +370,7 @@ class Enhancement {
     for (int pass = 0; pass < 4; ++pass) {
       double worst = 0;
       for (const auto& [label, v] : label_volumes(mesh)) worst = std::max(worst, std::abs(v / volumes_[label] - 1));
-      if (worst < 0.002 || restore_volumes(mesh, volumes_, 0.1 * o_.pixel_mm, keep, o_.threads).moved == 0) break;
+      if (worst < (o_.drawn_gap_mm > 0 ? 0.0005 : 0.002) || restore_volumes(mesh, volumes_, 0.1 * o_.pixel_mm, keep, o_.threads).moved == 0) break;
     }
   }
 

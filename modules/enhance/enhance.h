@@ -29,6 +29,8 @@ struct EnhanceOptions {
       target_tets;         ///< by curvature: edges get longer until about that many tetrahedra are expected
   double gradation = 1.3;             ///< largest ratio of neighbouring edge lengths
   double feature_deg = 70;      ///< straight chains of edges that bend by more are ridges, from 8 pixels on
+  double drawn_gap_mm = 0;  ///< above 0: sections are drawn outlines that far apart, without voxel steps: corners above 35 degrees that
+                            ///< three of them share are ridges, and volumes are kept closer
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above it ("not below, and not worse")
   int threads = 0;              ///< 0: all; the result does not depend on it
 };

@@ -10,6 +10,8 @@
 namespace stackmesh {
 namespace {
 
+constexpr double kUpright = 0.7;  // rise of an edge that runs from section to section, of its length
+
 /// Centre and area vector of every triangle.
 struct Facets {
   std::vector<Vec3> centre, area;
@@ -49,9 +51,13 @@ Vec3 wide_normal(const ComplexMesh& mesh, const Facets& facets, std::int32_t a, 
 
 }  // namespace
 
-std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm, int threads) {
-  const double limit = std::cos(feature_deg * M_PI / 180),
-               wide_limit = std::cos(0.75 * feature_deg * M_PI / 180);
+std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
+  const int threads = o.threads;
+  const auto is_upright = [&](std::int32_t a, std::int32_t b) {
+    const Vec3 d = mesh.points[b] - mesh.points[a];
+    return o.upright_deg > 0 && std::abs(d.z) > kUpright * norm(d);
+  };
+  const auto limit = [&](bool upright, double share) { return std::cos(share * (upright ? o.upright_deg : o.feature_deg) * M_PI / 180); };
   const Facets facets(mesh, threads);
   const std::vector<std::array<std::int32_t, 2>> edges = mesh.edges();
   std::vector<char> is_sharp(edges.size(), 0);
@@ -62,7 +68,7 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
     for (std::int32_t t : mesh.star[a])
       if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b) around.push_back(t);
     const Vec3 &n = facets.area[around[0]], &m = facets.area[around[1]];
-    is_sharp[e] = dot(n, m) <= limit * norm(n) * norm(m);
+    is_sharp[e] = dot(n, m) <= limit(is_upright(a, b), 1) * norm(n) * norm(m);
   });
   const std::size_t run = edges.size() / 16 + 1;
   parallel_for(16, threads, [&](std::size_t part) {
@@ -72,9 +78,11 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
       if (!is_sharp[e]) continue;
       const auto [a, b] = edges[e];
       mesh.edge_triangles(a, b, around);
-      const Vec3 left = wide_normal(mesh, facets, a, b, around[0], around[1], 0.375 * length_mm, stamp, ++now, list);
-      const Vec3 right = wide_normal(mesh, facets, a, b, around[1], around[0], 0.375 * length_mm, stamp, ++now, list);
-      is_sharp[e] = dot(left, right) <= wide_limit * norm(left) * norm(right);
+      const bool upright = is_upright(a, b);
+      const double reach = upright ? o.upright_reach_mm : 0.375 * o.length_mm;
+      const Vec3 left = wide_normal(mesh, facets, a, b, around[0], around[1], reach, stamp, ++now, list);
+      const Vec3 right = wide_normal(mesh, facets, a, b, around[1], around[0], reach, stamp, ++now, list);
+      is_sharp[e] = dot(left, right) <= limit(upright, 0.75) * norm(left) * norm(right);
     }
   });
   std::map<std::int32_t, std::vector<std::int32_t>> sharp;
@@ -100,6 +108,8 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
       chain.assign(1, {a, b});
       seen[{a, b}] = 1;
       double length = norm(mesh.points[a] - mesh.points[b]);
+      bool upright = is_upright(a, b);
+      int caps = 0;  // ends of the chain on a curve, such as the rim of a cap
       for (int side = 0; side < 2; ++side) {
         std::int32_t from = side ? b : a, v = side ? a : b;
         for (std::int32_t w = next(from, v); w >= 0; w = next(from, v)) {
@@ -108,11 +118,13 @@ std::size_t mark_ridges(ComplexMesh& mesh, double feature_deg, double length_mm,
           seen[e] = 1;
           chain.push_back(e);
           length += norm(mesh.points[w] - mesh.points[v]);
+          upright = upright && is_upright(v, w);
           from = v;
           v = w;
         }
+        caps += !mesh.curve[v].empty();
       }
-      if (length >= length_mm) chosen.insert(chosen.end(), chain.begin(), chain.end());
+      if (length >= o.length_mm || (upright && (length >= o.upright_length_mm || caps == 2))) chosen.insert(chosen.end(), chain.begin(), chain.end());
     }
   for (const auto& [a, b] : chosen) {
     mesh.add_ridge(a, b);

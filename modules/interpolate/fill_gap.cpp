@@ -144,7 +144,7 @@ class GapFiller {
              std::vector<std::int32_t>& layer) {
     const double steps = kSteps / std::min(pixel_mm_[0], pixel_mm_[1]);
     const Box& box = body.outline.box();
-    body.outline.blend(t, tension_, gap_.neighbours_rel, steps, outline_);
+    body.outline.blend(t, tension_, gap_.neighbours_rel, gap_.end_at, steps, outline_);
     if (depth_)
       for_pixels(box, [&](std::size_t p, std::size_t i) { nearest_outline_[p] = std::max(nearest_outline_[p], outline_[i]); });
     if (body.fields.empty()) {
@@ -160,7 +160,7 @@ class GapFiller {
     best_group_.assign(box.area(), 0);
     for (std::size_t g = 0; g < body.groups.size(); ++g) {
       const Box& inner = body.fields[g].box();
-      body.fields[g].blend(t, tension_, gap_.neighbours_rel, steps, value_);
+      body.fields[g].blend(t, tension_, gap_.neighbours_rel, gap_.end_at, steps, value_);
       const std::int32_t group = body.groups[g];
       for_pixels(inner, [&](std::size_t p, std::size_t i) {
         const std::size_t x = p % width_ - box.x0, y = p / width_ - box.y0, b = y * box.width() + x;

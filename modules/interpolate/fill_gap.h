@@ -11,6 +11,7 @@ namespace stackmesh::interpolate {
 struct Gap {
   const Pixels *before = nullptr, *low = nullptr, *high = nullptr, *after = nullptr;
   std::array<double, 2> neighbours_rel = {1, 1};  ///< the gaps beneath and above, as a share of this one
+  double end_at = 0.5;  ///< share of the gap at which a part without counterpart closes
 };
 
 /// How far a virtual layer's pixels are inside or outside, in pixels, 0 where it is not known.

@@ -152,14 +152,14 @@ double GroupField::share_of_motion() const {
 }
 
 void GroupField::blend(double t, double tension, const std::array<double, 2>& neighbours_rel,
-                       double steps_per_mm, std::vector<int>& out) const {
+                       double end_at, double steps_per_mm, std::vector<int>& out) const {
   std::array<double, 4> w = {0, 0, 0, 0};
   double sunk = 0;
   if (!slices_[1].present() || !slices_[2].present()) {
-    // A part that ends here: a dome that closes half way, as its voxels do.
+    // A part that ends here: a dome, by default one that closes half way, as its voxels do.
     const int only = slices_[1].present() ? 1 : 2;
-    const double away = only == 1 ? t : 1 - t;
-    sunk = peak_ * (away < 0.5 ? 1 - std::sqrt(1 - 4 * away * away) : 2 * away);
+    const double away = (only == 1 ? t : 1 - t) / end_at;
+    sunk = peak_ * (away < 1 ? 1 - std::sqrt(1 - away * away) : away);
     w[only] = 1;
   } else {
     const double beneath = std::max(kShortest, neighbours_rel[0]), above = std::max(kShortest, neighbours_rel[1]);

@@ -26,8 +26,8 @@ class GroupField {
   const Box& box() const { return box_; }
 
   /// The values at height t in (0, 1), times steps_per_mm, towards 0, row by row of the box. neighbours_rel: the
-  /// gaps beneath and above, as a share of this one.
-  void blend(double t, double tension, const std::array<double, 2>& neighbours_rel, double steps_per_mm,
+  /// gaps beneath and above, as a share of this one; end_at: where in the gap a group closes that one slice lacks.
+  void blend(double t, double tension, const std::array<double, 2>& neighbours_rel, double end_at, double steps_per_mm,
              std::vector<int>& out) const;
 
  private:

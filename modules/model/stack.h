@@ -32,16 +32,31 @@ struct Section {
   std::vector<SectionEdge> edges;
 };
 
+/// How a drawn label ends: told by its own contours, whatever other labels are in the stack.
+struct DrawnEnd {
+  double contour_mm = 0;    ///< height of its first or last drawn contour
+  double half_gap_mm = 0;   ///< half of its own gap there
+  double area_rel = 0;      ///< of that contour, as a share of the next one's (what lies inside counts as the label); 0: there is one contour
+  bool flat = false;        ///< as the sections were made for; the stitcher decides by its own options
+  bool on_section = false;  ///< a flat end lies on the label's last section itself, not half a gap beyond it
+  double last_mm = 0;       ///< height of that section: interpolated ones may follow the last contour
+};
+struct DrawnEnds {
+  Label label = 0;
+  DrawnEnd low, high;
+};
+
 /// Sections in ascending z, on one in-plane grid, and what they stand for.
 struct Stack {
   double grid_x_mm = 1, grid_y_mm = 1;  ///< size of a grid unit along x and y
-  double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for contour input a typical edge
+  double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for drawn contours their detail (stitch/drawn_detail.h)
   bool slices = true;   ///< true: a section stands for a slice that reaches half a gap to either side; false: plane cuts
   double end_gap_mm = 0;  ///< gap that the first and last section stand for; 0: the gap to the next real one
   std::vector<Section> sections;
   std::vector<LabelInfo> labels;        ///< labels[0] is the background
   Frame frame;                          ///< stack coordinates (mm) to world
   std::vector<Label> touches_low, touches_high;  ///< labels whose end section lies on the image's own border: empty if unknown
+  std::vector<DrawnEnds> drawn_ends;    ///< drawn contours only: an entry per label
 };
 
 /// Signed area (mm2) of a label in a section: the sum over its edges; exact before simplification.

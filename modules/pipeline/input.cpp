@@ -15,6 +15,15 @@
 namespace stackmesh {
 namespace {
 
+/// How the drawn labels are to end.
+void choose_caps(const InputOptions& options, const std::vector<ContourFile>& files, ContourStackOptions& contours) {
+  contours.caps = options.caps;
+  std::vector<LabelInfo> known = {{0, ""}};
+  for (const ContourFile& f : files) known.push_back({f.label, f.name});
+  for (const auto& [text, caps] : options.label_caps)
+    for (std::size_t k : resolve_labels(known, text, "--caps")) contours.label_caps[known[k].number] = caps;
+}
+
 void read_contours(const InputOptions& options, Input& input) {
   if (options.spacing_mm)
     fail_usage("--spacing is for PNG/TIFF slices", options.paths[0], "leave it out: contour files are in mm");
@@ -47,6 +56,7 @@ void read_contours(const InputOptions& options, Input& input) {
   }
   ContourStackOptions contours;
   contours.merge = options.merge;
+  choose_caps(options, files, contours);
   input.kind = "contours";
   input.sections = sections_from_contours(files, input.warnings, contours);
   input.labels.assign(input.sections->labels.begin() + 1, input.sections->labels.end());
@@ -64,6 +74,7 @@ void read_structures(const InputOptions& options, const std::string& path, Input
   contours.fill_missing = contours.repair = true;
   contours.merge = options.merge;
   contours.frame = set.frame;
+  choose_caps(options, set.structures, contours);
   input.kind = "rtstruct";
   input.anatomical = true;
   input.sections = sections_from_contours(set.structures, input.warnings, contours);

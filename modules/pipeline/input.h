@@ -7,6 +7,7 @@
 #include "contour/extract.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
+#include "stitch/stitch.h"
 
 namespace stackmesh {
 
@@ -17,6 +18,8 @@ struct InputOptions {
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   std::string series;                               ///< DICOM: series instance UID where a folder holds several
   bool merge = false;                               ///< selected labels become one
+  Caps caps = Caps::automatic;                      ///< how drawn labels end: other labels go on beside them
+  std::vector<std::pair<std::string, LabelEndCaps>> label_caps;  ///< by name or number
   std::string names;                                ///< label table (fem/label_table.h) that names labels; empty: none
 };
 

@@ -19,6 +19,7 @@
 #include "report/html_report.h"
 #include "pipeline/virtual_sections.h"
 #include "pipeline/volume_sections.h"
+#include "stitch/drawn_detail.h"
 #include "volume/raise_order.h"
 
 namespace stackmesh {
@@ -81,7 +82,11 @@ class MeshRun {
   void warn(const std::string& text) { report_.warnings.push_back(text); }
 
   void read() {
-    input_ = read_input(o_.input);
+    InputOptions input = o_.input;
+    input.caps = o_.stitch.caps;
+    input.label_caps = o_.label_caps_text;
+    input_ = read_input(input);
+    if (input_.volume) keep_pieces(*input_.volume, o_.pieces, input_.warnings);
     for (const std::string& w : input_.warnings) warn(w);
     report_.input.path = input_.path;
     report_.input.kind = input_.kind;
@@ -124,7 +129,7 @@ class MeshRun {
     if (input_.sections) {
       stack_ = std::move(*input_.sections);
       for (const Section& s : stack_.sections) report_.contours.vertices_traced += s.points.size();
-      add_virtual_sections(stack_, o_.sections.virtual_sections, o_.threads);
+      add_virtual_sections(stack_, o_.sections.virtual_sections, o_.threads, report_.warnings);
       for (const Section& s : stack_.sections) report_.contours.vertices += s.points.size();
     } else {
       SectionOptions options = o_.sections;
@@ -153,6 +158,7 @@ class MeshRun {
     StitchResult result = stitch_sections(stack_, options, progress_);
     for (const std::string& w : result.warnings) warn(w);
     surface_ = std::move(result.complex);
+    if (!input_.volume) keep_pieces(surface_, o_.pieces, report_.warnings);
     frame_ = stack_.frame;
     report_.stitched.added_points = result.added_points;
     report_.stitched.vertices = surface_.points.size();
@@ -166,6 +172,7 @@ class MeshRun {
     pixel_mm_ = stack_.pixel_mm;
     const std::size_t n = stack_.sections.size();
     gap_mm_ = n > 1 ? (stack_.sections[n - 1].z_mm - stack_.sections[0].z_mm) / static_cast<double>(n - 1) : pixel_mm_;
+    if (!input_.volume) drawn_gap_mm_ = drawn_gap_mm(stack_);
     if (!wants_html() || input_.volume) stack_ = Stack();  // contours are drawn in the report
   }
 
@@ -213,6 +220,7 @@ class MeshRun {
     options.pixel_mm = pixel_mm_;
     options.gap_mm = gap_mm_;
     if (!faired_.triangles.empty()) options.faired = &faired_;
+    options.drawn_gap_mm = drawn_gap_mm_;
     options.threads = o_.threads;
     options.label_edge_mm = label_sizes(o_.label_edges_text, "--edge-length");
     for (const LabelReport& row : report_.labels)
@@ -568,7 +576,7 @@ class MeshRun {
   Stack stack_;
   Frame frame_;
   int axis_ = 2;
-  double pixel_mm_ = 1, gap_mm_ = 1;
+  double pixel_mm_ = 1, gap_mm_ = 1, drawn_gap_mm_ = 0;  // drawn: of contour input, between drawn sections
   InterfaceComplex faired_;                   // stack coordinates; what enhancement draws the surface to
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   Judgement beside_;

@@ -12,6 +12,7 @@
 #include "fem/name_sets.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
+#include "pipeline/keep_pieces.h"
 #include "pipeline/volume_sections.h"
 #include "report/run_report.h"
 #include "stitch/stitch.h"
@@ -25,9 +26,10 @@ enum class Target { surface, volume };
 struct MeshRunOptions {
   Target target = Target::volume;
   InputOptions input;
+  PieceOptions pieces;                            ///< which pieces of each label are meshed
   SectionOptions sections;
   StitchOptions stitch;                           ///< label_caps are given by name or number in label_caps_text
-  std::vector<std::pair<std::string, Caps>> label_caps_text;
+  std::vector<std::pair<std::string, LabelEndCaps>> label_caps_text;
   bool enhance = false;                           ///< smooth and remesh the stitched surface
   std::optional<std::size_t> enhance_up_to;       ///< triangles; a larger stitched surface is kept as it is, with a warning
   EnhanceOptions enhancement;                     ///< pixel and gap are set by the run; label_edge_mm by label_edges_text

@@ -65,15 +65,8 @@ std::vector<ContourPolygon> cut(const InterfaceComplex& surface, double z_mm) {
   return polygons;
 }
 
-}  // namespace
-
-ContourSection contours_between(const ContourSection& low, const ContourSection& high, double z_mm) {
-  ContourFile both;
-  both.sections = {low, high};
-  std::vector<std::string> unused;
-  ContourStackOptions as_they_are;
-  as_they_are.repair = true;
-  Stack stack = sections_from_contours({both}, unused, as_they_are);
+/// The section in which the stitched stack meets a plane.
+ContourSection cut_stitched(Stack& stack, double z_mm) {
   StitchOptions options;
   options.caps = Caps::round;
   options.threads = 1;
@@ -89,6 +82,33 @@ ContourSection contours_between(const ContourSection& low, const ContourSection&
       p[1] += stack.frame.origin.y;
     }
   return section;
+}
+
+Stack stack_of(const ContourSection& low, const ContourSection& high) {
+  ContourFile both;
+  both.sections = {low, high};
+  std::vector<std::string> unused;
+  ContourStackOptions as_they_are;
+  as_they_are.repair = true;
+  return sections_from_contours({both}, unused, as_they_are);
+}
+
+}  // namespace
+
+ContourSection contours_between(const ContourSection& low, const ContourSection& high, double z_mm) {
+  Stack stack = stack_of(low, high);
+  return cut_stitched(stack, z_mm);
+}
+
+ContourSection dome_section(const ContourSection& last, double gap_mm, bool slices, double way_mm) {
+  ContourSection above = last;
+  above.z_mm += gap_mm;
+  Stack stack = stack_of(last, above);
+  stack.sections.pop_back();
+  stack.drawn_ends.clear();
+  stack.slices = slices;
+  stack.end_gap_mm = gap_mm;
+  return cut_stitched(stack, last.z_mm + way_mm);
 }
 
 }  // namespace stackmesh

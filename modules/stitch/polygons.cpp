@@ -10,7 +10,10 @@
 #include <set>
 
 #include "base/error.h"
+#include "stitch/contour_copies.h"
 #include "stitch/contour_crossings.h"
+#include "stitch/drawn_detail.h"
+#include "stitch/drawn_ends.h"
 #include "stitch/missing_contours.h"
 #include "stitch/planar.h"
 #include "stitch/snap_rounding.h"
@@ -22,6 +25,8 @@ constexpr std::size_t kMaxLabels = 256;
 constexpr double kSafeUnion_rel = 0.05;  // of the union may be drawn over twice
 constexpr double kInside_rel = 0.999;    // of a label in another one is all of it
 constexpr double kCovered_rel = 0.95;    // of a label under another one leaves too little of it
+
+constexpr double kMostlyOpen_rel = 0.25;  // of a label's outline outside another one: it does not lie inside
 
 using Mask = std::bitset<kMaxLabels>;  // a bit per label: inside or not
 
@@ -57,17 +62,22 @@ class SectionMaker {
   Stack run() {
     if (files_.size() > kMaxLabels)
       fail_input("more than " + std::to_string(kMaxLabels) + " labels drawn as contours", files_[kMaxLabels].path, "mesh fewer labels at once");
+    for (ContourFile& f : files_) join_sections(f, options_.same_height_mm);
+    align_heights(files_, options_.same_height_mm);
+    drop_copies();
+    const std::vector<DrawnEnds> ends = extend_ends(files_, options_);
     find_levels();
     if (options_.fill_missing) fill_missing();
     sort_into_levels();
     measure();
     std::vector<MaskedSection> masked;
     for (std::size_t i = 0; i < levels_.size(); ++i) masked.push_back(make_section(levels_[i], thickness(i)));
+    if (!options_.merge) warn_open_walls(masked);
     rank_labels();
     Stack stack;
     stack.slices = options_.slices;
     stack.grid_x_mm = stack.grid_y_mm = grid_;
-    stack.pixel_mm = median_edge_;
+    stack.drawn_ends = ends;
     stack.frame = options_.frame;
     stack.frame.origin = options_.frame.to_world({x0_, y0_, 0});
     stack.labels.push_back({0, ""});
@@ -79,6 +89,7 @@ class SectionMaker {
     }
     std::sort(stack.labels.begin(), stack.labels.end(), [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
     for (MaskedSection& m : masked) stack.sections.push_back(give_labels(std::move(m)));
+    stack.pixel_mm = drawn_pixel_mm(stack, median_edge_);
     for (const auto& [f, heights] : repaired_)
       warnings_.push_back(files_[f].path + ": " + name_of(f) + " has contours that cross themselves or each other at z = " + list_heights(heights) +
                           " mm; what they go round is united");
@@ -88,19 +99,43 @@ class SectionMaker {
   }
 
  private:
-  /// The heights of all labels; those that are nearly the same are one.
+  /// Contours that repeat another one of their section count once.
+  void drop_copies() {
+    for (ContourFile& f : files_) {
+      std::vector<double> where;
+      std::size_t copies = 0;
+      for (ContourSection& s : f.sections)
+        if (const std::size_t n = remove_copies(s.polygons); n > 0) {
+          copies += n;
+          where.push_back(s.z_mm);
+        }
+      if (copies > 0)
+        warnings_.push_back(f.path + ": " + (f.name.empty() ? "label " + std::to_string(f.label) : "'" + f.name + "'") + " repeats " +
+                            std::to_string(copies) + " of its contours, or nearly so, at z = " + list_heights(where) + " mm; each counts once");
+    }
+  }
+
+  /// A section whose sides know all labels that cover them.
+  struct MaskedSection {
+    struct Edge {
+      std::int32_t a, b;
+      Mask left, right;
+    };
+    Section section;
+    std::vector<Edge> edges;
+  };
+
+  /// The heights of all labels.
   void find_levels() {
     std::vector<double> heights;
     for (const ContourFile& f : files_)
       for (const ContourSection& s : f.sections) heights.push_back(s.z_mm);
     std::sort(heights.begin(), heights.end());
-    for (double z : heights)
-      if (levels_.empty() || z - levels_.back().z_mm > options_.same_height_mm) levels_.push_back({z, {}, {}});
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+    for (double z : heights) levels_.push_back({z, {}, {}});
   }
 
-  bool is_at(const ContourSection& s, const Level& level) const {
-    return s.z_mm >= level.z_mm && s.z_mm <= level.z_mm + options_.same_height_mm;
-  }
+  static bool is_at(const ContourSection& s, const Level& level) { return s.z_mm == level.z_mm; }
 
   void sort_into_levels() {
     std::size_t filled = 0;
@@ -163,7 +198,7 @@ class SectionMaker {
       std::size_t missing = 0;
       double first = 0;
       for (const Level& level : levels_)
-        if (level.z_mm > low && level.z_mm < high - options_.same_height_mm && level.of_file[f] == nullptr && missing++ == 0)
+        if (level.z_mm > low && level.z_mm < high && level.of_file[f] == nullptr && missing++ == 0)
           first = level.z_mm;
       if (missing > 0)
         warnings_.push_back(files_[f].path + " has no contour at " + std::to_string(missing) +
@@ -196,7 +231,9 @@ class SectionMaker {
 
   /// Heights that nobody has: told by a label's own gaps, where one is a multiple of its usual gap.
   void warn_gaps(std::size_t f) {
-    const std::vector<ContourSection>& s = files_[f].sections;
+    std::vector<ContourSection> s;
+    for (const ContourSection& own : files_[f].sections)
+      if (!own.interpolated) s.push_back(own);
     if (s.size() < 4) return;
     std::vector<double> gaps;
     for (std::size_t i = 1; i < s.size(); ++i) gaps.push_back(s[i].z_mm - s[i - 1].z_mm);
@@ -269,6 +306,45 @@ class SectionMaker {
       for (std::size_t g = f + 1; g < files_.size(); ++g)
         if (mask[g]) overlap_[{f, g}] += volume;
     }
+  }
+
+  /// A label that lies inside another one in most sections, but reaches its outline in some: the other one is open there.
+  void warn_open_walls(const std::vector<MaskedSection>& masked) {
+    struct Pair {
+      std::size_t inside = 0;                // sections
+      std::vector<double> open_z_mm;
+      double area_mm2 = 0;
+    };
+    std::map<std::pair<std::size_t, std::size_t>, Pair> pairs;
+    for (std::size_t i = 0; i < masked.size(); ++i) {
+      const MaskedSection& m = masked[i];
+      if (m.section.interpolated) continue;
+      std::map<std::pair<std::size_t, std::size_t>, double> exposed;  // of the first label, not within the second, mm
+      for (std::size_t f = 0; f < files_.size(); ++f)
+        for (std::size_t g = 0; g < files_.size(); ++g) {
+          if (f == g) continue;
+          double bare = 0, all = 0;
+          for (const MaskedSection::Edge& e : m.edges) {
+            if (e.left[f] == e.right[f]) continue;
+            const GridPoint a = m.section.points[e.a], b = m.section.points[e.b];
+            const double length = std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y) * grid_;
+            all += length;
+            if (!(e.left[f] ? e.right[g] : e.left[g])) bare += length;
+          }
+          if (all == 0 || bare > kMostlyOpen_rel * all) continue;
+          Pair& p = pairs[{f, g}];
+          if (bare == 0) {
+            ++p.inside;
+          } else {
+            p.open_z_mm.push_back(m.section.z_mm);
+            p.area_mm2 += bare * thickness(i);
+          }
+        }
+    }
+    for (const auto& [pair, p] : pairs)
+      if (!p.open_z_mm.empty() && p.inside >= p.open_z_mm.size())
+        warnings_.push_back(files_[pair.first].path + ": " + name_of(pair.first) + " lies inside " + name_of(pair.second) + ", but reaches its outline at z = " +
+                            list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " + text_of(p.area_mm2, "%.3g") + " mm2");
   }
 
   /// Who lies inside whom, and who shares how much with whom.
@@ -390,16 +466,6 @@ class SectionMaker {
   struct MaskedEdge {
     std::int32_t a, b;
     Mask mask;
-  };
-
-  /// A section whose sides know all labels that cover them.
-  struct MaskedSection {
-    struct Edge {
-      std::int32_t a, b;
-      Mask left, right;
-    };
-    Section section;
-    std::vector<Edge> edges;
   };
 
   Section give_labels(MaskedSection m) const {

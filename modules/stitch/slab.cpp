@@ -39,6 +39,7 @@ struct Copy {
 struct Sheet {
   std::uint8_t rims = 0;       // union over its rim edges
   EndShape end = EndShape::round;
+  double scale = 1;            // of a round end: SlabEnd::scale
   bool flat = false;           // an end of a single section that is closed by a plane
   bool has_inner = false;      // has vertices that are neither on its rim nor flat
   int layer = 0;               // order of sheets that meet over a coincident edge
@@ -116,12 +117,13 @@ class SlabStitcher {
     return edge_of == kBoth ? kRimBoth : edge_of == kLower ? kRimLower : kRimUpper;
   }
 
-  EndShape end_shape(const PlanarFace& face, bool upward) const {
+  /// Its shape and scale.
+  std::pair<EndShape, double> end_shape(const PlanarFace& face, bool upward) const {
     const auto& ends = upward ? in_.upward_ends : in_.downward_ends;
     const Label label = upward ? face.lower : face.upper;
     const auto it = std::lower_bound(ends.begin(), ends.end(), label,
-                                     [](const auto& e, Label l) { return e.first < l; });
-    return it != ends.end() && it->first == label ? it->second : EndShape::round;
+                                     [](const SlabEnd& e, Label l) { return e.label < l; });
+    return it != ends.end() && it->label == label ? std::make_pair(it->shape, it->scale) : std::make_pair(EndShape::round, 1.0);
   }
 
   /// A sheet that a single section bounds is an end: its labels may end in different shapes, so it is cut into
@@ -133,7 +135,7 @@ class SlabStitcher {
       const std::int32_t s = f->info().sheet;
       if (s < 0 || static_cast<std::size_t>(s) >= n || !sheets_[s].single()) continue;
       const bool upward = sheets_[s].rims == kRimLower;
-      const EndShape shape = end_shape(f->info(), upward);
+      const auto shape = end_shape(f->info(), upward);
       std::int32_t target = s;
       if (done[s]) {
         target = static_cast<std::int32_t>(sheets_.size());
@@ -141,8 +143,9 @@ class SlabStitcher {
         sheets_[target].rims = sheets_[s].rims;
       }
       done[s] = 1;
-      sheets_[target].end = shape;
-      sheets_[target].flat = shape != EndShape::round;
+      sheets_[target].end = shape.first;
+      sheets_[target].scale = shape.second;
+      sheets_[target].flat = shape.first != EndShape::round;
       // Faces of the first shape keep the number; mark them through a temporary one so that the flood ends.
       const std::int32_t temporary = 0x40000000 + static_cast<std::int32_t>(renumber_.size());
       flood_sheet(f, temporary, [&](FaceHandle face, int i) {
@@ -365,7 +368,7 @@ class SlabStitcher {
         sheets_[s].exponent = exponent_for(0.5 * sums[s].area - sums[s].height, sums[s].inner);
         continue;
       }
-      const double holds = in_.round_holds_rel, peak = 1.5 * holds;  // a dome holds two thirds of its height
+      const double holds = sheets_[s].scale * in_.round_holds_rel, peak = 1.5 * holds;  // a dome holds two thirds of its height
       const double profile = sums[s].height / sums[s].area, rising = sums[s].may_rise / sums[s].area;
       const double rim = rising > profile ? std::clamp((holds - peak * profile) / (rising - profile), 0.0, kRimRise) : 0;
       const double dome = profile > 0 ? std::min((holds - rim * rising) / profile, kPeakRise - rim) : peak - rim;

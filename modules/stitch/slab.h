@@ -14,6 +14,13 @@ enum class EndShape : std::uint8_t {
   on_plane   ///< a plane on the section itself (plane cuts)
 };
 
+/// How an end of a label's part is closed in one slab.
+struct SlabEnd {
+  Label label = 0;
+  EndShape shape = EndShape::round;
+  double scale = 1;  ///< of a round end: its height against that of one that stands for the whole slab
+};
+
 /// Two noded neighbouring sections and all that stitching them needs to know.
 struct SlabInput {
   const Section* lower = nullptr;
@@ -22,7 +29,7 @@ struct SlabInput {
   double scale_x = 1, scale_y = 1;  ///< grid units to the metric of the triangulation; few bits, so products are exact
   double round_holds_rel = 0.5;     ///< what a round end holds: this share of the gap over its area
   /// Shape of an end of a part with that label in the lower (upward end) or upper (downward end) section.
-  std::vector<std::pair<Label, EndShape>> upward_ends, downward_ends;  ///< sorted by label; absent: round
+  std::vector<SlabEnd> upward_ends, downward_ends;  ///< sorted by label; absent: round
 };
 
 /// What one slab contributes. Vertex numbers: 0 .. n_lower-1 are the lower section's points, then the upper

@@ -62,18 +62,28 @@ class StackStitcher {
       result_.caps[label] = {low ? "flat" : "round", high ? "flat" : "round"};
       if (low) flat_low_.push_back({label, extent.first});
       if (high) flat_high_.push_back({label, extent.last});
-      if (caps_of(label) == Caps::flat) always_flat_.insert(label);
+      ends_[label] = extent;
+      if (caps_of(label, false) == Caps::flat) flat_downward_.insert(label);
+      if (caps_of(label, true) == Caps::flat) flat_upward_.insert(label);
     }
   }
 
-  Caps caps_of(Label label) const {
+  Caps caps_of(Label label, bool high) const {
     const auto it = options_.label_caps.find(label);
-    return it == options_.label_caps.end() ? options_.caps : it->second;
+    return it == options_.label_caps.end() ? options_.caps : high ? it->second.high : it->second.low;
+  }
+
+  /// Null for labels of a volume.
+  const DrawnEnd* drawn_end(Label label, bool high) const {
+    for (const DrawnEnds& e : stack_.drawn_ends)
+      if (e.label == label) return high ? &e.high : &e.low;
+    return nullptr;
   }
 
   bool is_flat(Label label, const Extent& extent, bool high) const {
-    const Caps caps = caps_of(label);
+    const Caps caps = caps_of(label, high);
     if (caps != Caps::automatic) return caps == Caps::flat;
+    if (const DrawnEnd* drawn = drawn_end(label, high)) return drawn->area_rel >= options_.flat_area_rel;
     const std::size_t end = high ? extent.last : extent.first;
     const auto& border = high ? stack_.touches_high : stack_.touches_low;
     if (end == (high ? sections() - 1 : 0) && std::find(border.begin(), border.end(), label) != border.end()) return true;
@@ -88,17 +98,41 @@ class StackStitcher {
   void set_ends(SlabInput& slab, std::size_t k) const {
     const bool beyond = k == 0 || k == sections();
     const EndShape plane = beyond && !stack_.slices ? EndShape::on_plane : EndShape::flat;
-    std::set<Label> up = always_flat_, down = always_flat_;
-    if (options_.caps == Caps::flat && options_.label_caps.count(0) == 0) {  // holes end flat too
-      up.insert(0);
-      down.insert(0);
+    for (bool up : {true, false}) {
+      std::map<Label, SlabEnd> ends;
+      for (Label l : up ? flat_upward_ : flat_downward_) ends[l] = {l, plane, 1};
+      if (options_.caps == Caps::flat && options_.label_caps.count(0) == 0) ends[0] = {0, plane, 1};  // holes end flat too
+      for (const auto& [l, extent] : ends_) {
+        if (up ? extent.last + 1 != k : extent.first != k) continue;
+        const auto& flat = up ? flat_high_ : flat_low_;
+        const DrawnEnd* drawn = drawn_end(l, up);
+        if (std::find(flat.begin(), flat.end(), std::make_pair(l, up ? extent.last : extent.first)) != flat.end())
+          ends[l] = {l, drawn != nullptr && drawn->on_section ? EndShape::on_plane : plane, 1};
+        else if (drawn != nullptr && drawn->half_gap_mm > 0)
+          ends[l] = {l, EndShape::round, round_scale(*drawn, slab, up)};
+      }
+      for (const auto& [l, end] : ends) (up ? slab.upward_ends : slab.downward_ends).push_back(end);
     }
-    for (const auto& f : flat_high_)
-      if (f.second + 1 == k) up.insert(f.first);
-    for (const auto& f : flat_low_)
-      if (f.second == k) down.insert(f.first);
-    for (Label l : up) slab.upward_ends.emplace_back(l, plane);
-    for (Label l : down) slab.downward_ends.emplace_back(l, plane);
+  }
+
+  /// How high a round end is in this slab, against one that stands for the whole slab.
+  double round_scale(const DrawnEnd& end, const SlabInput& slab, bool up) const {
+    const double peak = (stack_.slices ? 1.5 : 1.0) * end.half_gap_mm;  // above its last contour
+    const double tip = end.contour_mm + (up ? peak : -peak);
+    const double rise = (up ? tip - slab.z_low_mm : slab.z_high_mm - tip) / (slab.z_high_mm - slab.z_low_mm);
+    return std::clamp(rise / (stack_.slices ? 0.75 : 0.5), 0.05, 1.25);
+  }
+
+  /// How far the slab beyond the first or last section reaches: for the label with the widest gap that ends there.
+  double reach_beyond(bool high) const {
+    double reach = 0;
+    for (const auto& [l, extent] : ends_) {
+      if (high ? extent.last + 1 != sections() : extent.first != 0) continue;
+      const DrawnEnd* drawn = drawn_end(l, high);
+      if (drawn == nullptr || !(drawn->half_gap_mm > 0)) return 2 * end_half_gap_mm(stack_, high);
+      reach = std::max(reach, 2 * drawn->half_gap_mm);
+    }
+    return reach > 0 ? reach : 2 * end_half_gap_mm(stack_, high);
   }
 
   /// One slab between every two sections, and one to an empty section beyond either end.
@@ -112,8 +146,8 @@ class StackStitcher {
       SlabInput slab;
       slab.lower = k == 0 ? &empty_ : &stack_.sections[k - 1];
       slab.upper = k == n ? &empty_ : &stack_.sections[k];
-      slab.z_low_mm = k == 0 ? stack_.sections[0].z_mm - 2 * end_half_gap_mm(stack_, false) : slab.lower->z_mm;
-      slab.z_high_mm = k == n ? stack_.sections[n - 1].z_mm + 2 * end_half_gap_mm(stack_, true) : slab.upper->z_mm;
+      slab.z_low_mm = k == 0 ? stack_.sections[0].z_mm - reach_beyond(false) : slab.lower->z_mm;
+      slab.z_high_mm = k == n ? stack_.sections[n - 1].z_mm + reach_beyond(true) : slab.upper->z_mm;
       slab.scale_x = scale_x_;
       slab.scale_y = scale_y_;
       // A slice stands for half a gap; of a plane cut no more is known than that a dome of half a gap is likely.
@@ -186,7 +220,8 @@ class StackStitcher {
   StitchResult result_;
   const Section empty_;
   std::vector<std::pair<Label, std::size_t>> flat_low_, flat_high_;  // label, its first or last section
-  std::set<Label> always_flat_;
+  std::set<Label> flat_downward_, flat_upward_;  // whatever ends there: asked for
+  std::map<Label, Extent> ends_;
   std::vector<SlabSurface> slabs_;
   double scale_x_ = 1, scale_y_ = 1;
 };

@@ -12,9 +12,14 @@ namespace stackmesh {
 /// How the ends of labels are closed (docs: CONTRACT, --caps).
 enum class Caps { automatic, flat, round };
 
+/// The same for either end of one label.
+struct LabelEndCaps {
+  Caps low = Caps::automatic, high = Caps::automatic;
+};
+
 struct StitchOptions {
-  Caps caps = Caps::automatic;        ///< for every label without an entry in label_caps
-  std::map<Label, Caps> label_caps;   ///< per label
+  Caps caps = Caps::automatic;               ///< for every label without an entry in label_caps
+  std::map<Label, LabelEndCaps> label_caps;  ///< per label
   double flat_area_rel = 0.7;         ///< automatic: flat when the end section keeps this share of its neighbour's area
   double snap_mm = 0;                 ///< merge tolerance between neighbouring contours (paper 3.2.1); 0: none
   int threads = 0;                    ///< 0: all

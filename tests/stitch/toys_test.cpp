@@ -173,7 +173,7 @@ TEST(StitchToys, FlatAndRoundLabelsEndSideBySide) {
   const LabelVolume v = volume_of({{"0000000", "0111220", "0111220", "0111220", "0000000"},
                                    {"0000000", "0111220", "0111220", "0111220", "0000000"}}, 2);
   StitchOptions o = with_caps(Caps::round);
-  o.label_caps[1] = Caps::flat;
+  o.label_caps[1] = {Caps::flat, Caps::flat};
   const Stitched s = stitch_volume(v, 0, o);
   EXPECT_EQ(defects(s.complex()), "");
   const SurfaceCheck check = check_surface(s.complex());
