@@ -31,7 +31,7 @@ struct MeshArguments {
   std::string max_volume;
   double radius_edge = 0, dihedral = 0;
   int order = 1;
-  int keep_largest = 1;
+  std::string keep_largest;
   double min_piece_mm3 = 0;
   bool strict = false, per_label = false, msh2 = false, yes = false;
   std::string return_parameters;  // of 3D Slicer
@@ -50,7 +50,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   a.contours.add_to(command);
   command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
   command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round, per end 1:high=flat,low=round")->capture_default_str();
-  command.add_option("--keep-largest", a.keep_largest, "only the largest piece of each label, or the N largest")->expected(0, 1)->check(CLI::Range(1, 1000000));
+  command.add_option("--keep-largest", a.keep_largest, "only the largest piece of each label, or the N largest")->expected(0, 1)->type_name("[N]");
   command.add_option("--min-piece", a.min_piece_mm3, "no piece of a label that is smaller, mm3")->check(positive);
   command.add_option("--space", a.space, "world frame of what is written: lps or ras")->capture_default_str();
   command.add_flag("--per-label", a.per_label, "surfaces: NAME_<label>.EXT for each label");
@@ -96,7 +96,12 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.threads = a.contours.threads;
   o.stitch.snap_mm = a.snap_mm;
   parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
-  if (command.get_option("--keep-largest")->count() > 0) o.pieces.keep_largest = a.keep_largest;
+  if (command.get_option("--keep-largest")->count() > 0) {
+    const std::string& n = a.keep_largest;
+    if (n.size() > 6 || n.find_first_not_of("0123456789") != std::string::npos || n == "0")
+      fail_usage("'" + n + "' is no number of pieces", "--keep-largest", "write --keep-largest for one piece of each label, or --keep-largest N, after the input");
+    o.pieces.keep_largest = n.empty() ? 1 : std::stoi(n);
+  }
   if (a.min_piece_mm3 > 0) o.pieces.min_piece_mm3 = a.min_piece_mm3;
   o.order = a.order;
   o.many_tets = a.yes;

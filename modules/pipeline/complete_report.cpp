@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <functional>
 #include <limits>
 
 #include "validate/check_bends.h"
 #include "validate/check_thickness.h"
+#include "validate/check_topology.h"
 #include "validate/defects.h"
 
 namespace stackmesh {
@@ -45,6 +48,26 @@ std::function<std::optional<int>(const Vec3&)> section_finder(const Judged& j) {
       return static_cast<int>(best);
     };
   return nullptr;
+}
+
+/// Where a label's surplus handles are: its narrowest.
+void add_handles(RunReport& report, const InterfaceComplex& surface, const LabelTopology& t, const std::function<std::optional<int>(const Vec3&)>& section_of) {
+  if (t.surplus() == 0) return;
+  for (HandlePlace& h : find_handles(surface, t.label, std::min<std::size_t>(100, static_cast<std::size_t>(t.surplus())))) {
+    Defect d;
+    d.kind = "handle";
+    d.label = t.label;
+    d.where = h.where;
+    if (section_of) d.section = section_of(h.where);
+    d.entity_kind = "triangles";
+    d.entities.assign(h.triangles.begin(), h.triangles.end());
+    d.size_mm = h.size_mm;
+    char text[160];
+    std::snprintf(text, sizeof text, "Label %d has a handle or tunnel about %.3g mm wide at (%.2f, %.2f, %.2f) mm that no slice asks for.", static_cast<int>(t.label), h.size_mm, h.where.x,
+                  h.where.y, h.where.z);
+    d.text = text;
+    report.defects.push_back(std::move(d));
+  }
 }
 
 }  // namespace
@@ -136,12 +159,18 @@ void complete_report(RunReport& report, const Judged& j) {
       in.voxel_mm = std::max(in.voxel_mm, j.volume->spacing_mm[k]);
     }
   }
+  TopologyOptions nests;
+  nests.axis = j.axis;
+  nests.threads = j.threads;
+  const std::vector<LabelTopology> topology = j.volume ? check_topology(*report.surface, *j.volume, nests) : j.sections ? check_topology(*report.surface, *j.sections, nests) : std::vector<LabelTopology>();
+  if (j.volume || j.sections) in.topology = &topology;
   report.verdicts = judge(in, report.limits);
   DefectOptions where;
   where.poor_angle_deg = report.limits.angle_warn_deg;
   where.poor_dihedral_deg = report.limits.dihedral_warn_deg;
   where.section_of = section_finder(j);
   report.defects = find_defects(*j.surface, *report.surface, j.mesh, in.volume, j.fidelity, where);
+  for (const LabelTopology& t : topology) add_handles(report, *j.surface, t, where.section_of);
 }
 
 }  // namespace stackmesh

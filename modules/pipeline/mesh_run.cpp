@@ -173,7 +173,7 @@ class MeshRun {
     const std::size_t n = stack_.sections.size();
     gap_mm_ = n > 1 ? (stack_.sections[n - 1].z_mm - stack_.sections[0].z_mm) / static_cast<double>(n - 1) : pixel_mm_;
     if (!input_.volume) drawn_gap_mm_ = drawn_gap_mm(stack_);
-    if (!wants_html() || input_.volume) stack_ = Stack();  // contours are drawn in the report
+    if (o_.reports.empty() || input_.volume) stack_ = Stack();  // a report judges by the contours, and draws them
   }
 
   bool is_too_large() {

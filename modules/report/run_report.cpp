@@ -125,6 +125,7 @@ void each_limit(L& l, Visit visit) {
   visit("dihedral_max_warn_deg", l.dihedral_max_warn_deg), visit("dihedral_max_fail_deg", l.dihedral_max_fail_deg);
   visit("jacobian_warn", l.jacobian_warn), visit("jacobian_fail", l.jacobian_fail);
   visit("thin_warn_share", l.thin_warn_share), visit("thin_elements", l.thin_elements);
+  visit("handles_fail", l.handles_fail);
   visit("small_label_voxels", l.small_label_voxels);
 }
 

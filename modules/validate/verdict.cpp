@@ -29,6 +29,7 @@ class Judge {
   std::vector<Verdict> run() {
     if (in_.surface) closed(), intersections();
     if (in_.volume && in_.volume->tets > 0) orientation(), conforming();
+    if (in_.topology) topology();
     if (in_.fidelity && !in_.fidelity->empty()) components(), volume(), position(), fidelity();
     if (in_.bends && in_.bends->surface.edges > 0) roughness();
     if (in_.surface) quality();
@@ -100,6 +101,29 @@ class Judge {
     v.status = in_.volume->conforms ? Status::pass : Status::fail;
     v.explanation = v.status == Status::pass ? "Neighbouring tetrahedra share whole faces, and the faces between labels are the surface's triangles."
                                              : "Faces shared by more than two tetrahedra, or whose labels differ from the surface's.";
+  }
+
+  void topology() {
+    Verdict& v = add("topology", "Topology of the slices");
+    long surplus = 0, most = 0;
+    Label most_label = 0;
+    for (const LabelTopology& t : *in_.topology) {
+      const bool loose = in_.fidelity == nullptr && t.pieces > t.implied_pieces && t.implied_pieces > 0;
+      if (t.surplus() == 0 && !loose) continue;
+      surplus += t.surplus();
+      v.labels.push_back(t.label);
+      worsen(v.status, Status::warn);
+      v.explanation += " " + name(t.label) + ":";
+      if (t.surplus() > 0) v.explanation += " " + counted(static_cast<std::size_t>(t.handles), "handle", "handles") + " where the slices imply at most " + std::to_string(t.implied_handles) + ";";
+      if (loose) v.explanation += " " + counted(static_cast<std::size_t>(t.pieces), "piece", "pieces") + " where the slices imply " + std::to_string(t.implied_pieces) + ";";
+      if (t.surplus() > most) most = t.surplus(), most_label = t.label;
+    }
+    if (l_.handles_fail > 0 && surplus >= static_cast<long>(l_.handles_fail)) v.status = Status::fail;
+    v.figure = counted(static_cast<std::size_t>(surplus), "handle too many", "handles too many");
+    if (most_label != 0 && v.labels.size() > 1) v.figure += ", most in " + name(most_label);
+    v.limit = l_.handles_fail > 0 ? "warn above 0, fail from " + std::to_string(l_.handles_fail) : "warn above 0";
+    v.explanation = "Tunnels and loops of each label that no slice has: what lies inside an outline goes on in the next slice where it overlaps it." + v.explanation;
+    if (v.explanation.back() == ';') v.explanation.back() = '.';
   }
 
   const LabelSurface* surface_of(Label label) const {

@@ -9,6 +9,7 @@
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_thickness.h"
+#include "validate/check_topology.h"
 #include "validate/check_volume.h"
 
 namespace stackmesh {
@@ -19,7 +20,7 @@ const char* to_text(Status status);
 
 /// One line at the head of a report: a figure against its limit, in words.
 struct Verdict {
-  std::string id;     ///< closed, intersections, orientation, conforming, components, volume, position, fidelity, roughness, quality, thickness
+  std::string id;     ///< closed, intersections, orientation, conforming, topology, components, volume, position, fidelity, roughness, quality, thickness
   std::string title;  ///< "Closed"
   std::string figure;       ///< "0 open edges"
   std::string limit;        ///< "none allowed"
@@ -33,7 +34,7 @@ struct Verdict {
 /// of the mesh file.
 struct Defect {
   /// hole, open_edge, flipped_triangle, self_intersection, degenerate_triangle, inverted_tet,
-  /// nonconforming_face, missing_component, unmatched_piece, swapped_label, shift, wrong_frame, thin, poor_triangle, poor_tet
+  /// nonconforming_face, missing_component, unmatched_piece, swapped_label, handle, shift, wrong_frame, thin, poor_triangle, poor_tet
   std::string kind;
   Label label = 0;      ///< 0: none or unknown
   Vec3 where;           ///< mm; the middle of what is wrong
@@ -67,6 +68,7 @@ struct Limits {
   double jacobian_warn = 0.05, jacobian_fail = 0.005;       ///< smallest scaled Jacobian of a tet
   double thin_warn_share = 0.05;  ///< share of a label's surface whose thickness is below `thin_elements`; never fails
   double thin_elements = 2;
+  std::size_t handles_fail = 0;  ///< handles beyond those that the slices imply: so many of all labels fail, fewer warn; 0: they never fail
   std::size_t small_label_voxels = 200;  ///< below, volume, voxel centres and distances of a label warn at most
 };
 
@@ -77,6 +79,7 @@ struct JudgeInput {
   const std::vector<LabelFidelity>* fidelity = nullptr;
   const std::vector<LabelThickness>* thickness = nullptr;
   const BendCheck* bends = nullptr;
+  const std::vector<LabelTopology>* topology = nullptr;
   std::vector<LabelInfo> labels;                   ///< of the input, without the background; names for texts
   std::vector<double> input_volume_mm3;            ///< beside `labels`; empty: unknown
   double pixel_mm = 1, voxel_mm = 1;               ///< smallest in-plane and largest spacing
