@@ -182,8 +182,18 @@ class StructureSetReader {
     u = u - dot(u, n) * n;
     u = (1 / norm(u)) * u;
     set_.frame.axes = {u, cross(n, u), n};
+    if (in_tenths()) planar_mm_ += 0.1 * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
     set_.warnings.push_back(path_ + ": the contours do not lie in axial planes; they are stacked along (" + std::to_string(n.x) + ", " +
                             std::to_string(n.y) + ", " + std::to_string(n.z) + ")");
+  }
+
+  /// Written with one decimal: oblique points then lie up to 0.05 mm along each axis beside their plane.
+  bool in_tenths() const {
+    for (const RawContour& c : contours_)
+      for (const Vec3& p : c.points)
+        for (double x : {p.x, p.y, p.z})
+          if (std::abs(10 * x - std::round(10 * x)) > 1e-6) return false;
+    return true;
   }
 
   void place(const RawContour& c) {
@@ -197,7 +207,7 @@ class StructureSetReader {
       sum += p.z;
       polygon.points.push_back({p.x, p.y});
     }
-    if (high - low > kPlanar_mm)
+    if (high - low > planar_mm_)
       fail_input("the contour does not lie in a plane parallel to the others", where(c.structure, c.number),
                  "leave the structure out with --label, or redraw it in one family of parallel planes");
     section.z_mm = high == low ? low : sum / static_cast<double>(c.points.size());
@@ -224,6 +234,7 @@ class StructureSetReader {
   std::map<long, std::size_t> by_number_;
   std::vector<std::size_t> chosen_;  // structures, in the order asked
   std::vector<RawContour> contours_;
+  double planar_mm_ = kPlanar_mm;  // how far a contour may leave its plane
   std::vector<std::string> empty_;
 };
 

@@ -142,6 +142,8 @@ TEST_F(StructureSet, AnyFamilyOfParallelPlanesIsRead) {
   expect_bounds(bounds(), {99, 119, 10, 30, -40, -20}, 1e-3);
   DRAWN(oblique, "oblique");
   EXPECT_NEAR(volume(mesh(oblique), 1), 8000, 0.1);
+  DRAWN(tenths, "oblique_tenths");
+  EXPECT_NEAR(volume(mesh(tenths), 1), 8000, 0.01 * 8000);
   DRAWN(unparallel, "unparallel");
   fails(3, {"mesh", unparallel, "-o", out("b.vtu")}, {"parallel", "'Tilted', contour 1"}, {"R.json", "a.obj", "a.vtu"});
 }

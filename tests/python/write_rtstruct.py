@@ -185,6 +185,9 @@ def case(name, path):
         write(path, [structure("Box", turned(box(10, -40, 20, [100 + z for z in HEIGHTS]), axes))])
     elif name == "oblique":
         write(path, [structure("Box", turned(box(10, -40, 20, [100 + z for z in HEIGHTS]), oblique_axes()))])
+    elif name == "oblique_tenths":  # written with one decimal
+        contours = turned(box(10, -40, 20, [100 + z for z in HEIGHTS]), oblique_axes())
+        write(path, [structure("Box", [[tuple(round(float(x), 1) for x in p) for p in c] for c in contours])])
     elif name == "unparallel":
         tilted = turned([square(40, 0, 10, 9)], [(1, 0, 0), (0, 0.8, 0.6), (0, -0.6, 0.8)])
         write(path, [structure("Box", box(0, 0, 20)), structure("Tilted", tilted)])
