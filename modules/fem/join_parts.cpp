@@ -76,10 +76,16 @@ class Joiner {
     return 50 * softer / (edges / static_cast<double>(count));
   }
 
-  /// Axes of each node that are supported.
+  /// Axes of each node that are supported: in all steps alike where it is tied.
   std::map<std::int32_t, int> supported_axes() const {
     std::map<std::int32_t, int> axes;  // bits
-    for (const Support& s : model_.sets.supports)
+    for (const LoadStep& step : model_.sets.steps)
+      for (const auto& [v, bits] : supported_axes(step)) axes[v] |= bits;
+    return axes;
+  }
+  std::map<std::int32_t, int> supported_axes(const LoadStep& step) const {
+    std::map<std::int32_t, int> axes;
+    for (const Support& s : step.supports)
       for (const NodeSet& set : model_.sets.node_sets) {
         if (set.name != s.set) continue;
         for (const std::int32_t v : set.nodes)
@@ -87,6 +93,26 @@ class Joiner {
             if (s.value_mm[axis]) axes[v] |= 1 << axis;
       }
     return axes;
+  }
+  /// A support that leaves out a tie in one step would leave the node free in another.
+  void check_ties(const std::map<std::int32_t, int>& axes) const {
+    std::set<std::int32_t> bound;
+    for (const RigidPoint& p : model_.sets.points)
+      for (const NodeSet& set : model_.sets.node_sets)
+        if (set.name == p.set) bound.insert(set.nodes.begin(), set.nodes.end());
+    for (const LoadStep& step : model_.sets.steps) {
+      const std::map<std::int32_t, int> here = supported_axes(step);
+      for (const auto& [v, bits] : axes) {
+        const auto at = here.find(v);
+        if ((at == here.end() ? 0 : at->second) != bits && is_follower_.count(v) > 0)
+          fail_input("a node of tied parts is held in one step and free in another", o_.path + ", load_case, " + step.name + ", node " + std::to_string(v + 1),
+                     "hold the same sets in all steps where they reach tied faces, or choose sets away from them");
+      }
+    }
+    for (const std::int32_t v : is_tied_)
+      if (bound.count(v) > 0)
+        fail_input("a node of tied parts is bound to a rigid point", o_.path + ", load_case, points, node " + std::to_string(v + 1),
+                   "choose a set away from the tied faces");
   }
 
   /// What two parts do to each other; those without a common face, that touch in points or along edges at most, do as all others.
@@ -121,6 +147,8 @@ class Joiner {
             group.push_back(rest[k]);
             rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
           }
+        if (group.size() > 1) is_tied_.insert(group.begin(), group.end());
+        is_follower_.insert(group.begin() + 1, group.end());
         for (std::size_t i = 1; i < group.size(); ++i) {
           Tie::Node node{group[i], group[0], {}};
           for (int axis = 0; axis < 3; ++axis) node.axes[axis] = axes.count(node.node) == 0 || (axes.at(node.node) >> axis & 1) == 0;
@@ -129,6 +157,7 @@ class Joiner {
         copies = std::move(rest);
       }
     }
+    check_ties(axes);
     for (auto& [ab, tie] : ties) {
       std::sort(tie.nodes.begin(), tie.nodes.end(), [](const Tie::Node& a, const Tie::Node& b) { return a.node < b.node; });
       tie.name = unique("tie_" + sets.parts[ab.first] + "_to_" + sets.parts[ab.second]);
@@ -152,6 +181,7 @@ class Joiner {
 
   SolverModel& model_;
   const JoinOptions& o_;
+  std::set<std::int32_t> is_tied_, is_follower_;  // nodes that follow or are followed, and those that follow
 };
 
 }  // namespace
