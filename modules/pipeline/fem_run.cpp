@@ -1,6 +1,7 @@
 #include "pipeline/fem_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/error.h"
@@ -21,6 +22,7 @@
 #include "report/html_report.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
+#include "volume/refine_tets.h"
 
 namespace stackmesh {
 namespace {
@@ -79,6 +81,12 @@ class FemRun {
       OrderOptions order;
       order.threads = o_.mesh.threads;
       clock.run("volume", [&] { product.mesh = raise_order(std::move(product.mesh), order).mesh; });
+    }
+    if (o_.mesh.refine > 0) {
+      const double tets = static_cast<double>(product.mesh.tets.size()) * std::pow(8, o_.mesh.refine);
+      if (!o_.mesh.many_tets && tets > 1e7)
+        fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
+      clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.refine); });
     }
     clock.run("write", [&] { model(std::move(product), report, files); });
     report.peak_rss_mb = peak_memory_mb();
