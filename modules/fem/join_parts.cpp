@@ -24,6 +24,7 @@ class Joiner {
         fail_usage("contact needs materials, for its stiffness", "parts '" + p.parts[0] + "' and '" + p.parts[1] + "'",
                    "give them with --materials LAW.json, or choose --contact tie");
       if (p.stiffness_mpa_mm <= 0) p.stiffness_mpa_mm = default_stiffness(p);
+      if (p.stabilise > 0) stabilise(p);
     }
     tie();
   }
@@ -50,6 +51,7 @@ class Joiner {
       pair->contact = law.contact;
       pair->friction = law.friction;
       pair->stiffness_mpa_mm = law.stiffness_mpa_mm.value_or(0);
+      pair->stabilise = law.stabilise;
     }
   }
 
@@ -74,6 +76,32 @@ class Joiner {
       softer = softer == 0 ? mean : std::min(softer, mean);
     }
     return 50 * softer / (edges / static_cast<double>(count));
+  }
+
+  /// Soft springs along the axes on all corners of those parts of a pair that have no support: they catch what contact does not hold
+  /// before it closes, or where it slides.
+  void stabilise(const SurfacePair& p) {
+    double area = 0;
+    for (const TetFace f : surface(p.primary).faces) {
+      const auto v = outward_nodes(model_.mesh, f);
+      area += 0.5 * norm(cross(model_.mesh.points[v[1]] - model_.mesh.points[v[0]], model_.mesh.points[v[2]] - model_.mesh.points[v[0]]));
+    }
+    const std::map<std::int32_t, int> held = supported_axes();
+    const SolverSets& sets = model_.sets;
+    for (const std::string& name : p.parts) {
+      const auto part = static_cast<int>(std::find(sets.parts.begin(), sets.parts.end(), name) - sets.parts.begin());
+      const bool is_held = std::any_of(held.begin(), held.end(), [&](const auto& h) { return sets.part_of_node[h.first] == part; });
+      if (is_held) continue;
+      std::set<std::int32_t> corners;
+      for (const auto& t : model_.mesh.tets)
+        if (sets.part_of_node[t[0]] == part) corners.insert(t.begin(), t.end());
+      SpringSet springs;
+      springs.name = unique("stabilise_" + name);
+      const double each = p.stabilise * p.stiffness_mpa_mm * area / static_cast<double>(corners.size());
+      for (const std::int32_t v : corners)
+        for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) springs.springs.push_back({v, axis, each});
+      model_.sets.springs.push_back(std::move(springs));
+    }
   }
 
   /// Axes of each node that are supported: in all steps alike where it is tied.
@@ -172,7 +200,8 @@ class Joiner {
 
   std::string unique(const std::string& name) const {
     const auto taken = [&](const std::string& n) {
-      return std::any_of(model_.sets.node_sets.begin(), model_.sets.node_sets.end(), [&](const NodeSet& s) { return lower_case(s.name) == lower_case(n); });
+      const auto same = [&](const auto& s) { return lower_case(s.name) == lower_case(n); };
+      return std::any_of(model_.sets.node_sets.begin(), model_.sets.node_sets.end(), same) || std::any_of(model_.sets.springs.begin(), model_.sets.springs.end(), same);
     };
     std::string result = name;
     for (int n = 2; taken(result); ++n) result = name + "_" + std::to_string(n);

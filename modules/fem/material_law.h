@@ -129,6 +129,7 @@ struct ContactLaw {
   Contact contact = Contact::tie;
   double friction = 0;
   std::optional<double> stiffness_mpa_mm;  ///< unset: see join_parts()
+  double stabilise = 0;  ///< of contact: springs hold the parts that have no support, in all as stiff as this share of the contact
 };
 
 /// A law file, read and checked.

@@ -239,7 +239,7 @@ class LawReader : LawJson {
 
   void contact(const Json& j) {
     const std::string where = "contact";
-    only(j, where, {"comment", "source", "parts", "type", "friction", "stiffness_MPa_mm"});
+    only(j, where, {"comment", "source", "parts", "type", "friction", "stiffness_MPa_mm", "stabilise"});
     ContactLaw law;
     if (!j.contains("parts") || !j.at("parts").is_array() || j.at("parts").size() != 2 || !j.at("parts")[0].is_string() ||
         !j.at("parts")[1].is_string())
@@ -248,8 +248,10 @@ class LawReader : LawJson {
     const std::string type = text(j, "type", where);
     if (type != "tie" && type != "contact" && type != "none") bad("\"type\" is none of \"tie\", \"contact\", \"none\"", where);
     law.contact = type == "tie" ? Contact::tie : type == "contact" ? Contact::contact : Contact::none;
-    if (law.contact != Contact::contact && (j.contains("friction") || j.contains("stiffness_MPa_mm")))
-      bad("\"friction\" and \"stiffness_MPa_mm\" are for type \"contact\"", where);
+    if (law.contact != Contact::contact && (j.contains("friction") || j.contains("stiffness_MPa_mm") || j.contains("stabilise")))
+      bad("\"friction\", \"stiffness_MPa_mm\" and \"stabilise\" are for type \"contact\"", where);
+    law.stabilise = number(j, "stabilise", where, 0);
+    if (!(law.stabilise >= 0 && law.stabilise <= 1)) bad("\"stabilise\" is no share from 0 to 1", where);
     law.friction = number(j, "friction", where, 0);
     if (!(law.friction >= 0)) bad("\"friction\" is negative", where);
     if (j.contains("stiffness_MPa_mm")) {

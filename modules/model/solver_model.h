@@ -48,6 +48,7 @@ struct SurfacePair {
   Contact contact = Contact::none;
   double stiffness_mpa_mm = 0;  ///< of contact: pressure per mm of penetration
   double friction = 0;          ///< coefficient of contact
+  double stabilise = 0;         ///< springs to the ground on unsupported parts, as a share of the contact's stiffness
 };
 
 /// Nodes of one part that go where the nodes at the same places go in another part.

@@ -172,6 +172,7 @@ Json fem(const FemReport& f) {
     if (p.contact == Contact::contact) {
       row["stiffness_mpa_mm"] = p.stiffness_mpa_mm;
       row["friction"] = p.friction;
+      row["stabilise"] = p.stabilise;
     }
     pairs.push_back(row);
   }

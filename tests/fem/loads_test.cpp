@@ -70,6 +70,25 @@ TEST_F(Loads, MomentsOfASetAPointAndADistributingPointBendTheBarToTheSameArc) {
   expect_answer("end beside.frd 12 " + end + " 0 " + std::to_string(5.0 * 12 / 4000) + " 1e-3");
 }
 
+TEST_F(Loads, RefiningComesCloserToTheAnswer) {
+  NEEDS_CCX();
+  write_mesh("bar.vtu", block(2, 2, 6, {1, 1, 2}));
+  law(R"("1": {"E_MPa": 1000, "poisson": 0})", R"({"fixed": [{"set": "label_1_cap_low"}], "loaded": [{"set": "label_1_cap_high", "moment_Nmm": [0, 10, 0]}]})");
+  double before = 1e9;
+  for (const int times : {0, 1, 2}) {
+    const std::string name = "refined" + std::to_string(times);
+    fem("bar.vtu --materials law.json --order 1 --refine " + std::to_string(times) + " --report r.json -o " + name + ".inp");
+    EXPECT_EQ(report().at("fem").at("elements").get<std::size_t>(), std::size_t{144} << (3 * times));
+    solve(name);
+    run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_answers.py' end " + name + ".frd 12 " + std::to_string(10 * 144 / (2 * kEi)) + " 0 0 1e-4", "answer");
+    const std::string text = read("answer.log"), what = "worst difference ";
+    const double off = std::stod(text.substr(text.find(what) + what.size()));
+    EXPECT_LT(off, 0.6 * before) << times;
+    before = off;
+  }
+  EXPECT_LT(before, 0.2 * 0.54);
+}
+
 TEST_F(Loads, LargeDisplacementsRollTheBarToACircle) {
   NEEDS_CCX();
   bar(R"({"fixed": [{"set": "label_1_cap_low"}], "large_displacements": true, "increments": 5,
