@@ -266,6 +266,9 @@ class FemRun {
     join_parts(model, join);
     check_supports(model, o_.materials);
     report.fem = summary(model, materials);
+    if (model.mesh.mid.empty() && !model.sets.steps.empty())
+      report.warnings.push_back("linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
+                                "take --order 2 for figures that are to be relied on");
 
     MeshWriteOptions write = o_.mesh.write;
     write.space = product.space;
