@@ -96,6 +96,13 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
                   m.young_min_mpa, m.young_max_mpa, m.young_mean_mpa, m.law.c_str(), 100 * m.clamped_low, 100 * m.clamped_high, m.materials,
                   100 * m.bin_error_rel);
   }
+  if (f.bodies.size() > 1) {
+    std::printf("bodies    %zu that share no face with each other\n", f.bodies.size());
+    for (std::size_t i = 1; i < f.bodies.size() && i <= 5; ++i)
+      std::printf("          label %d (%s), %zu elements, %.4g mm3 at (%.4g, %.4g, %.4g)\n", f.bodies[i].label, f.bodies[i].name.c_str(), f.bodies[i].tets, f.bodies[i].volume_mm3,
+                  f.bodies[i].centre.x, f.bodies[i].centre.y, f.bodies[i].centre.z);
+    if (f.bodies.size() > 6) std::printf("          and %zu smaller ones\n", f.bodies.size() - 6);
+  }
   for (const FemStep& p : f.steps) {
     std::printf("%-9s %zu supports, ", f.steps.size() > 1 ? p.name.c_str() : "load case", p.supports);
     if (p.frequency) std::printf("natural frequencies\n");

@@ -299,6 +299,7 @@ class FemRun {
       f.skins.push_back({s.name, s.thickness_mm});
       f.shells += s.faces.size();
     }
+    f.bodies = bodies_of(model);
     for (const LoadStep& s : model.sets.steps) f.steps.push_back(summary(model, s));
     if (!f.steps.empty()) {
       f.supports = f.steps[0].supports;

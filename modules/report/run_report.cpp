@@ -192,7 +192,9 @@ Json fem(const FemReport& f) {
                          {"materials", m.materials},
                          {"bin_error_max_rel", m.bin_error_rel},
                          {"voxels", m.voxels}});
-  Json steps = Json::array();
+  Json steps = Json::array(), bodies = Json::array();
+  for (const Body& b : f.bodies)
+    bodies.push_back({{"label", b.label}, {"name", b.name}, {"elements", b.tets}, {"volume_mm3", b.volume_mm3}, {"centre_mm", {b.centre.x, b.centre.y, b.centre.z}}});
   for (const FemStep& s : f.steps)
     steps.push_back({{"name", s.name},
                      {"type", s.frequency ? "frequency" : "static"},
@@ -215,6 +217,7 @@ Json fem(const FemReport& f) {
           {"pairs", pairs},
           {"materials", materials},
           {"skins", skins},
+          {"bodies", bodies},
           {"load_case", {{"supports", f.supports}, {"loaded_nodes", f.loaded_nodes}, {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}}, {"steps", steps}}}};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fem/assign_materials.h"
+#include "fem/check_supports.h"
 #include "model/geometry.h"
 #include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
@@ -98,6 +99,7 @@ struct FemReport {
   std::size_t supports = 0, loaded_nodes = 0;  ///< of the first step
   Vec3 force_n;                                ///< of the first step
   std::vector<FemStep> steps;
+  std::vector<Body> bodies;  ///< the largest first
 };
 
 /// Everything a run reports (modules/report/README.md lists the fields of the JSON form).

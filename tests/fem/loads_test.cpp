@@ -169,6 +169,15 @@ TEST_F(Loads, BodiesThatNothingHoldsAreNamed) {
   const std::string material = R"("1": {"E_MPa": 1000, "poisson": 0.3})";
   law(material, R"({"fixed": [{"set": "label_1_cap_low"}], "loaded": [{"set": "label_1_cap_high", "force_N": [0, 0, -40]}]})");
   refuses(3, "crumb.vtu --materials law.json", {"1 of 2 bodies are not supported", "label 1 (label_1) of 6 elements and 2 mm3 at (7.5, 0.5, 11), loaded", "--min-piece"});
+  // Without a load case they are listed, the crumb after the bar.
+  law(material, "{}");
+  fem("crumb.vtu --materials law.json --report r.json --report r.html -o crumb.inp");
+  const auto bodies = report().at("fem").at("bodies");
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(bodies[1].at("elements"), 6);
+  EXPECT_NEAR(bodies[1].at("volume_mm3").get<double>(), 2, 1e-9);
+  EXPECT_NE(read("fem.log").find("label 1 (label_1), 6 elements, 2 mm3 at (7.5, 0.5, 11)"), std::string::npos) << read("fem.log");
+  EXPECT_NE(read("r.html").find("a load case must hold each of them"), std::string::npos);
   write_mesh("bar.vtu", block(2, 2, 6, {1, 1, 2}));
   const auto with = [&](const std::string& load_case) { law(material, load_case); };
   const std::string loaded = R"("loaded": [{"set": "label_1_cap_high", "force_N": [0, 0, -40]}]})";
