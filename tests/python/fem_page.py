@@ -55,7 +55,7 @@ material = report["fem"]["materials"][0]
 bins = re.search(r"(\d+) bins, off by at most ([\d.]+) %", page)
 displacement = np.linalg.norm(read_frd("femur.frd").fields["DISP"][:, :3], axis=1).max()
 wrong = []
-for what, said, found, tolerance in (("tetrahedra", tets, report["fem"]["elements"], 0.1), ("largest modulus", high, material["modulus_max_mpa"], 0.1),
+for what, said, found, tolerance in (("tetrahedra", tets, report["fem"]["elements"], 0.3), ("largest modulus", high, material["modulus_max_mpa"], 0.1),
                                      ("mean modulus", mean, material["modulus_mean_mpa"], 0.03), ("displacement", moved, displacement, 0.05),
                                      ("error of the bins, %", float(bins.group(2)), 100 * material["bin_error_max_rel"], 0.5)):
     print(f"{what}: the page says {said:g}, found {found:.5g}")
