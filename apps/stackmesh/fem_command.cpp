@@ -92,11 +92,24 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
     if (f.placeholder_materials) std::printf("none given\n");
     else if (m.law.empty()) std::printf("E %.5g MPa\n", m.young_mean_mpa);
     else
-      std::printf("E %.5g to %.5g, mean %.5g MPa (%s); set to the floor %.1f %%, to the ceiling %.1f %%\n", m.young_min_mpa, m.young_max_mpa,
-                  m.young_mean_mpa, m.law.c_str(), 100 * m.clamped_low, 100 * m.clamped_high);
+      std::printf("E %.5g to %.5g, mean %.5g MPa (%s); set to the floor %.1f %%, to the ceiling %.1f %%; %zu bins in .inp and .bdf, off by at most %.2g %%\n",
+                  m.young_min_mpa, m.young_max_mpa, m.young_mean_mpa, m.law.c_str(), 100 * m.clamped_low, 100 * m.clamped_high, m.materials,
+                  100 * m.bin_error_rel);
   }
-  if (f.supports + f.loaded_nodes > 0)
-    std::printf("load case %zu supports, %zu loaded nodes, force (%.5g, %.5g, %.5g) N\n", f.supports, f.loaded_nodes, f.force_n.x, f.force_n.y, f.force_n.z);
+  if (f.bodies.size() > 1) {
+    std::printf("bodies    %zu that share no face with each other\n", f.bodies.size());
+    for (std::size_t i = 1; i < f.bodies.size() && i <= 5; ++i)
+      std::printf("          label %d (%s), %zu elements, %.4g mm3 at (%.4g, %.4g, %.4g)\n", f.bodies[i].label, f.bodies[i].name.c_str(), f.bodies[i].tets, f.bodies[i].volume_mm3,
+                  f.bodies[i].centre.x, f.bodies[i].centre.y, f.bodies[i].centre.z);
+    if (f.bodies.size() > 6) std::printf("          and %zu smaller ones\n", f.bodies.size() - 6);
+  }
+  for (const FemStep& p : f.steps) {
+    std::printf("%-9s %zu supports, ", f.steps.size() > 1 ? p.name.c_str() : "load case", p.supports);
+    if (p.frequency) std::printf("natural frequencies\n");
+    else
+      std::printf("%zu loaded nodes, force (%.5g, %.5g, %.5g) N%s%s\n", p.loaded_nodes, p.force_n.x, p.force_n.y, p.force_n.z,
+                  norm(p.gravity_mm_s2) > 0 ? ", gravity" : "", p.large_displacements ? ", large displacements" : "");
+  }
   for (const std::string& o : outputs) std::printf("written   %s\n", o.c_str());
 }
 

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "commands.h"
 #include "slicer_module.h"
 #include "volume/tetgen_worker.h"
@@ -26,6 +27,20 @@ void check_command(int argc, char** argv, const CLI::App& program) {
   if (word.rfind('-', 0) == 0) return;
   stackmesh::fail_usage(argc > 1 ? "unknown command '" + word + "'" : "no command", "command line",
                         "choose one of " + known + "; see stackmesh --help");
+}
+
+/// For an option that the command does not know the one that it is the most like: " (did you mean --edge-length?)".
+std::string meant(const CLI::App& program, const std::string& complaint) {
+  const std::vector<CLI::App*> commands = program.get_subcommands();
+  const std::size_t at = complaint.find("--");
+  if (commands.empty() || at == std::string::npos || complaint.find("not expected") == std::string::npos) return "";
+  const std::string word = complaint.substr(at + 2, complaint.find_first_of(" =,", at) - at - 2);
+  std::vector<std::string> known;
+  for (const CLI::Option* option : commands[0]->get_options())
+    if (!option->get_group().empty())  // those without a group are hidden
+      for (const std::string& name : option->get_lnames()) known.push_back(name);
+  const std::string nearest = stackmesh::nearest_names(word, known, 1);
+  return nearest.empty() ? "" : " (did you mean --" + nearest + "?)";
 }
 
 int run(int argc, char** argv) {
@@ -54,7 +69,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {  // --help, --version
     return program.exit(e);
   } catch (const CLI::ParseError& e) {
-    return report((std::string(e.what()) + ", command line; see stackmesh --help").c_str(), stackmesh::ErrorKind::usage);
+    return report((std::string(e.what()) + meant(program, e.what()) + ", command line; see stackmesh --help").c_str(), stackmesh::ErrorKind::usage);
   }
   return 0;
 }

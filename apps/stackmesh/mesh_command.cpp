@@ -30,7 +30,7 @@ struct MeshArguments {
   double snap_mm = 0, timeout_s = 600;
   std::string max_volume;
   double radius_edge = 0, dihedral = 0;
-  int order = 1;
+  int order = 1, refine = 0;
   std::string keep_largest;
   double min_piece_mm3 = 0;
   bool strict = false, per_label = false, msh2 = false, yes = false;
@@ -71,6 +71,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
       command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
       command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")->check(CLI::Range(1, 2))->capture_default_str(),
+      command.add_option("--refine", a.refine, "how often every tetrahedron is cut into eight at the end: the same surface and order, edges half as long")->check(CLI::Range(0, 4))->capture_default_str(),
       command.add_flag("--yes", a.yes, "go on when more than 10 million tetrahedra are estimated"),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
       command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
@@ -104,6 +105,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   }
   if (a.min_piece_mm3 > 0) o.pieces.min_piece_mm3 = a.min_piece_mm3;
   o.order = a.order;
+  o.refine = a.refine;
   o.many_tets = a.yes;
   if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.fill.max_volume_mm3);
   if (a.radius_edge > 0) o.fill.radius_edge = a.radius_edge;
@@ -166,6 +168,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"strict", a.strict ? "on" : "off"}};
   if (target == Target::volume) {
     o.option_texts.push_back({"order", std::to_string(a.order)});
+    o.option_texts.push_back({"refine", std::to_string(a.refine)});
     o.option_texts.push_back({"max_volume_mm3", a.max_volume.empty() ? "unset" : a.max_volume});
     o.option_texts.push_back({"radius_edge", a.radius_edge > 0 ? text_of(a.radius_edge) : "unset"});
     o.option_texts.push_back({"dihedral_deg", a.dihedral > 0 ? text_of(a.dihedral) : "unset"});

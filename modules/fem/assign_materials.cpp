@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "fem/lay_fibres.h"
 #include "fem/map_modulus.h"
 #include "fem/tet_shape.h"
 
@@ -76,13 +77,21 @@ class Assigner {
     row.poisson = m.poisson;
     SolverSets& sets = model_.sets;
     if (m.young_mpa) {
-      ElementMaterial material{"M_" + row.name, label, *m.young_mpa, m.poisson, m.density_t_mm3.value_or(0), tets};
+      ElementMaterial material{"M_" + row.name, label, *m.young_mpa, m.poisson, m.density_t_mm3.value_or(0), tets, m.kind, m.constants};
+      if (m.axes) lay_axes(*m.axes, tets, sets);
+      if (m.fibres) {
+        const std::size_t unclear = lay_fibres(model_, label, *m.fibres, where(label));
+        if (unclear > 0)
+          report_.warnings.push_back("label " + std::to_string(label) + ": the way through the wall goes along the long axis in " + std::to_string(unclear) +
+                                     " elements, whose fibres take any direction across it");
+      }
       for (const std::int32_t t : tets) {
         sets.modulus_mpa[t] = material.young_mpa;
         sets.density_t_mm3[t] = material.density_t_mm3;
       }
       row.young_min_mpa = row.young_mean_mpa = row.young_max_mpa = material.young_mpa;
       row.density_mean_t_mm3 = material.density_t_mm3;
+      row.kind = m.kind;
       sets.materials.push_back(std::move(material));
     } else {
       map(label, m, tets, row);
@@ -168,9 +177,13 @@ class Assigner {
     std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return sets.modulus_mpa[a] < sets.modulus_mpa[b]; });
     const auto bins = static_cast<std::size_t>(plan_->mapping.bins);
     const double low = row.young_min_mpa, width = row.young_max_mpa - low;
+    const Binning binning = plan_->mapping.binning;
+    const double ratio = std::log(row.young_max_mpa / low);
     const auto bin_of = [&](std::size_t i) {
-      if (plan_->mapping.equal_count) return i * std::min(bins, order.size()) / order.size();
+      if (binning == Binning::equal_count) return i * std::min(bins, order.size()) / order.size();
       if (width <= 0) return std::size_t{0};
+      if (binning == Binning::logarithmic)
+        return std::min(bins - 1, static_cast<std::size_t>(std::log(sets.modulus_mpa[order[i]] / low) / ratio * static_cast<double>(bins)));
       return std::min(bins - 1, static_cast<std::size_t>((sets.modulus_mpa[order[i]] - low) / width * static_cast<double>(bins)));
     };
     row.materials = 0;
@@ -189,6 +202,11 @@ class Assigner {
       }
       material.young_mpa /= volumes;
       material.density_t_mm3 /= volumes;
+      if (binning == Binning::logarithmic) {  // the mean, but off from none by more than the middle of the bin would be
+        const double first = sets.modulus_mpa[material.tets.front()], last = sets.modulus_mpa[material.tets.back()];
+        const double most = std::max(std::tanh(0.5 * ratio / static_cast<double>(bins)), (last - first) / (last + first));
+        material.young_mpa = std::clamp(material.young_mpa, (1 - most) * last, std::max((1 - most) * last, (1 + most) * first));
+      }
       for (const std::int32_t t : material.tets)
         row.bin_error_rel = std::max(row.bin_error_rel, std::abs(material.young_mpa / sets.modulus_mpa[t] - 1));
       std::sort(material.tets.begin(), material.tets.end());

@@ -12,6 +12,7 @@ namespace stackmesh {
 struct MaterialRow {
   Label label = 0;
   std::string name, law;  ///< law "": constant
+  MaterialKind kind = MaterialKind::linear;  ///< of other kinds the moduli are those at small strain (orthotropic: along the fibre)
   std::size_t elements = 0;
   double young_min_mpa = 0, young_mean_mpa = 0, young_max_mpa = 0;  ///< mean over the volume
   double poisson = 0, density_mean_t_mm3 = 0;

@@ -24,6 +24,7 @@ class Joiner {
         fail_usage("contact needs materials, for its stiffness", "parts '" + p.parts[0] + "' and '" + p.parts[1] + "'",
                    "give them with --materials LAW.json, or choose --contact tie");
       if (p.stiffness_mpa_mm <= 0) p.stiffness_mpa_mm = default_stiffness(p);
+      if (p.stabilise > 0) stabilise(p);
     }
     tie();
   }
@@ -50,6 +51,7 @@ class Joiner {
       pair->contact = law.contact;
       pair->friction = law.friction;
       pair->stiffness_mpa_mm = law.stiffness_mpa_mm.value_or(0);
+      pair->stabilise = law.stabilise;
     }
   }
 
@@ -76,10 +78,42 @@ class Joiner {
     return 50 * softer / (edges / static_cast<double>(count));
   }
 
-  /// Axes of each node that are supported.
+  /// Soft springs along the axes on all corners of those parts of a pair that have no support: they catch what contact does not hold
+  /// before it closes, or where it slides.
+  void stabilise(const SurfacePair& p) {
+    double area = 0;
+    for (const TetFace f : surface(p.primary).faces) {
+      const auto v = outward_nodes(model_.mesh, f);
+      area += 0.5 * norm(cross(model_.mesh.points[v[1]] - model_.mesh.points[v[0]], model_.mesh.points[v[2]] - model_.mesh.points[v[0]]));
+    }
+    const std::map<std::int32_t, int> held = supported_axes();
+    const SolverSets& sets = model_.sets;
+    for (const std::string& name : p.parts) {
+      const auto part = static_cast<int>(std::find(sets.parts.begin(), sets.parts.end(), name) - sets.parts.begin());
+      const bool is_held = std::any_of(held.begin(), held.end(), [&](const auto& h) { return sets.part_of_node[h.first] == part; });
+      if (is_held) continue;
+      std::set<std::int32_t> corners;
+      for (const auto& t : model_.mesh.tets)
+        if (sets.part_of_node[t[0]] == part) corners.insert(t.begin(), t.end());
+      SpringSet springs;
+      springs.name = unique("stabilise_" + name);
+      const double each = p.stabilise * p.stiffness_mpa_mm * area / static_cast<double>(corners.size());
+      for (const std::int32_t v : corners)
+        for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) springs.springs.push_back({v, axis, each});
+      model_.sets.springs.push_back(std::move(springs));
+    }
+  }
+
+  /// Axes of each node that are supported: in all steps alike where it is tied.
   std::map<std::int32_t, int> supported_axes() const {
     std::map<std::int32_t, int> axes;  // bits
-    for (const Support& s : model_.sets.supports)
+    for (const LoadStep& step : model_.sets.steps)
+      for (const auto& [v, bits] : supported_axes(step)) axes[v] |= bits;
+    return axes;
+  }
+  std::map<std::int32_t, int> supported_axes(const LoadStep& step) const {
+    std::map<std::int32_t, int> axes;
+    for (const Support& s : step.supports)
       for (const NodeSet& set : model_.sets.node_sets) {
         if (set.name != s.set) continue;
         for (const std::int32_t v : set.nodes)
@@ -87,6 +121,26 @@ class Joiner {
             if (s.value_mm[axis]) axes[v] |= 1 << axis;
       }
     return axes;
+  }
+  /// A support that leaves out a tie in one step would leave the node free in another.
+  void check_ties(const std::map<std::int32_t, int>& axes) const {
+    std::set<std::int32_t> bound;
+    for (const RigidPoint& p : model_.sets.points)
+      for (const NodeSet& set : model_.sets.node_sets)
+        if (set.name == p.set) bound.insert(set.nodes.begin(), set.nodes.end());
+    for (const LoadStep& step : model_.sets.steps) {
+      const std::map<std::int32_t, int> here = supported_axes(step);
+      for (const auto& [v, bits] : axes) {
+        const auto at = here.find(v);
+        if ((at == here.end() ? 0 : at->second) != bits && is_follower_.count(v) > 0)
+          fail_input("a node of tied parts is held in one step and free in another", o_.path + ", load_case, " + step.name + ", node " + std::to_string(v + 1),
+                     "hold the same sets in all steps where they reach tied faces, or choose sets away from them");
+      }
+    }
+    for (const std::int32_t v : is_tied_)
+      if (bound.count(v) > 0)
+        fail_input("a node of tied parts is bound to a rigid point", o_.path + ", load_case, points, node " + std::to_string(v + 1),
+                   "choose a set away from the tied faces");
   }
 
   /// What two parts do to each other; those without a common face, that touch in points or along edges at most, do as all others.
@@ -121,6 +175,8 @@ class Joiner {
             group.push_back(rest[k]);
             rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
           }
+        if (group.size() > 1) is_tied_.insert(group.begin(), group.end());
+        is_follower_.insert(group.begin() + 1, group.end());
         for (std::size_t i = 1; i < group.size(); ++i) {
           Tie::Node node{group[i], group[0], {}};
           for (int axis = 0; axis < 3; ++axis) node.axes[axis] = axes.count(node.node) == 0 || (axes.at(node.node) >> axis & 1) == 0;
@@ -129,6 +185,7 @@ class Joiner {
         copies = std::move(rest);
       }
     }
+    check_ties(axes);
     for (auto& [ab, tie] : ties) {
       std::sort(tie.nodes.begin(), tie.nodes.end(), [](const Tie::Node& a, const Tie::Node& b) { return a.node < b.node; });
       tie.name = unique("tie_" + sets.parts[ab.first] + "_to_" + sets.parts[ab.second]);
@@ -143,7 +200,8 @@ class Joiner {
 
   std::string unique(const std::string& name) const {
     const auto taken = [&](const std::string& n) {
-      return std::any_of(model_.sets.node_sets.begin(), model_.sets.node_sets.end(), [&](const NodeSet& s) { return lower_case(s.name) == lower_case(n); });
+      const auto same = [&](const auto& s) { return lower_case(s.name) == lower_case(n); };
+      return std::any_of(model_.sets.node_sets.begin(), model_.sets.node_sets.end(), same) || std::any_of(model_.sets.springs.begin(), model_.sets.springs.end(), same);
     };
     std::string result = name;
     for (int n = 2; taken(result); ++n) result = name + "_" + std::to_string(n);
@@ -152,6 +210,7 @@ class Joiner {
 
   SolverModel& model_;
   const JoinOptions& o_;
+  std::set<std::int32_t> is_tied_, is_follower_;  // nodes that follow or are followed, and those that follow
 };
 
 }  // namespace

@@ -17,7 +17,8 @@ struct JoinOptions {
 /// Contact without a stiffness gets 50 E / h, with E the smaller mean modulus of the two sides' elements at the contact and h the
 /// mean edge of its faces: at most about 2 % of what a layer of elements gives way by.
 /// Precondition: materials are assigned, supports applied.
-/// @throws Error(input) for a law that names parts that do not touch, or a pair twice; Error(usage) for contact without materials
+/// @throws Error(input) for a law that names parts that do not touch, or a pair twice, a tied node held in one step only
+/// or bound to a rigid point; Error(usage) for contact without materials
 void join_parts(SolverModel& model, const JoinOptions& options);
 
 }  // namespace stackmesh

@@ -4,10 +4,15 @@
 
 namespace stackmesh {
 
-/// Turns a load case's sets into supports and forces on nodes: a force is spread as a uniform traction over the faces of its
-/// set, a pressure along their inward normals, both by the elements' own shape functions (so second-order faces get their mid-side
-/// shares).
-/// @throws Error(input) for a set that is not there, or has no faces to load, or nodes held to two different displacements
+/// Turns a load case by names of sets into steps of a solver model. A force is spread as an even traction over the faces of its set, a
+/// moment as one that rises linearly from their centre, both by the elements' own shape functions (so second-order faces get their
+/// mid-side shares); a pressure stays one on the faces, so that solvers let it follow them. Rigid points and springs to the ground
+/// become the model's.
+/// @throws Error(input) for a set that is not there, or has no faces to load, nodes held to two different displacements, or bound to two
+/// points, or bound and held
 void apply_load_case(SolverModel& model, const LoadCase& load_case, const std::string& path);
+
+/// The force that a pressure is in all, on the faces as they lie.
+Vec3 force_of(const SolverModel& model, const Pressure& pressure);
 
 }  // namespace stackmesh

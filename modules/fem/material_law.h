@@ -35,8 +35,21 @@ struct ModulusLaw {
   Value at(double intensity) const;
 };
 
+/// Fibres by rule: the wall's depth is the solution of Laplace's equation between two sets (0 on the first, 1 on the second), its
+/// gradient the way through the wall; the helix angle goes linearly with the depth from the first angle to the second. The fibre
+/// lies at that angle to the circumference, towards `along`, at right angles to the gradient.
+struct FibreRule {
+  std::string from, to;           ///< sets of faces: endocardium, epicardium
+  std::array<double, 2> angle_deg{60, -60};
+  Vec3 along = {0, 0, 1};         ///< the long axis, unit, from apex to base
+};
+
 /// What a label is made of: a constant modulus, or a law.
 struct LabelMaterial {
+  MaterialKind kind = MaterialKind::linear;
+  std::vector<double> constants;              ///< of other kinds, see MaterialKind
+  std::optional<FibreRule> fibres;            ///< of materials with axes
+  std::optional<std::array<Vec3, 2>> axes;    ///< the same for all its elements
   std::optional<double> young_mpa;
   std::string law;                            ///< of MaterialPlan::laws; used where young_mpa is unset
   double poisson = 0.3;
@@ -49,27 +62,65 @@ struct SkinMaterial {
   double young_mpa = 0, poisson = 0.3, density_t_mm3 = 0;
 };
 
+/// Which elements of a label share a material in decks that cannot carry one modulus an element.
+enum class Binning {
+  logarithmic,    ///< bins of as wide a ratio of modulus each: no element is off by more than half of it
+  equal_count,    ///< of as many elements each
+  equal_modulus,  ///< of as wide a range of modulus each
+};
+
 struct MappingOptions {
   bool integrate_modulus = true;  ///< the modulus field over each element; else the mean intensity, mapped once
   int erode_px = 0;               ///< voxels of the label nearer to its border than this many are not used
   int bins = 200;                 ///< materials per label in decks that cannot carry one modulus an element
-  bool equal_count = true;        ///< bins of as many elements each; else of as wide a range of modulus each
+  Binning binning = Binning::logarithmic;
   int threads = 0;
 };
 
 /// Supports and loads by the names of sets.
 struct LoadCase {
+  /// A set, or a point of `points`, held or moved along axes.
   struct Held {
     std::string set;
     std::array<std::optional<double>, 3> value_mm;
+    std::array<std::optional<double>, 3> value_rad{};  ///< rotations, of a point
   };
+  /// Exactly one of pressure, and force or moment or both.
   struct Loaded {
-    std::string set;
-    std::optional<Vec3> force_n;          ///< in all, spread evenly over the faces
-    std::optional<double> pressure_mpa;   ///< against the faces
+    std::string set;                       ///< of faces, or a point of `points`
+    std::optional<Vec3> force_n;           ///< in all, spread evenly over the faces
+    std::optional<double> pressure_mpa;    ///< against the faces
+    std::optional<Vec3> moment_nmm{};      ///< in all, about the point, or about the faces' centre
   };
-  std::vector<Held> held;
-  std::vector<Loaded> loaded;
+  /// A point that stands for a set of faces: bound to it as a rigid body, or its loads spread over the faces.
+  struct Point {
+    std::string name, set;
+    Vec3 at_mm;
+    bool rigid = true;
+  };
+  struct Spring {
+    std::string set;
+    std::optional<Vec3> n_per_mm;        ///< in all, along the axes, spread evenly over the faces
+    std::optional<double> mpa_per_mm;    ///< foundation: pressure per mm along the faces' normals
+  };
+  struct Acting {
+    std::vector<Held> held;
+    std::vector<Loaded> loaded;
+    std::optional<Vec3> gravity_mm_s2;
+    bool empty() const { return held.empty() && loaded.empty() && !gravity_mm_s2; }
+  };
+  struct Step {
+    std::string name;
+    Analysis analysis = Analysis::statics;
+    bool large_displacements = false;
+    int increments = 0, modes = 10;
+    Acting acting;
+  };
+  Acting always;  ///< in every step
+  std::vector<Point> points;
+  std::vector<Spring> springs;
+  Step defaults;             ///< of the one step that there is where `steps` is empty
+  std::vector<Step> steps;
 };
 
 /// What two parts of --parts do to each other.
@@ -78,6 +129,7 @@ struct ContactLaw {
   Contact contact = Contact::tie;
   double friction = 0;
   std::optional<double> stiffness_mpa_mm;  ///< unset: see join_parts()
+  double stabilise = 0;  ///< of contact: springs hold the parts that have no support, in all as stiff as this share of the contact
 };
 
 /// A law file, read and checked.

@@ -1,16 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <set>
 
-#include "base/error.h"
-#include "fem/material_law.h"
+#include "fem/law_json.h"
 
 namespace stackmesh {
 namespace {
-
-using Json = nlohmann::json;
 
 const std::set<std::string> kDensityUnits = {"g/cm3", "mg/cm3", "kg/m3", "t/mm3"};
 const std::set<std::string> kModulusUnits = {"MPa", "GPa", "Pa"};
@@ -32,9 +27,9 @@ const std::vector<KnownLaw>& known() {
 }
 
 /// Walks a law file; every complaint says where in it.
-class LawReader {
+class LawReader : LawJson {
  public:
-  explicit LawReader(const std::string& path) { plan_.path = path; }
+  explicit LawReader(const std::string& path) : LawJson(path) { plan_.path = path; }
 
   MaterialPlan read() {
     std::ifstream file(plan_.path);
@@ -56,36 +51,12 @@ class LawReader {
     if (j.contains("skins"))
       for (const auto& [name, skin] : object(j.at("skins"), "skins")) skin_material(name, skin);
     if (j.contains("mapping")) mapping(j.at("mapping"));
-    if (j.contains("load_case")) load_case(j.at("load_case"));
+    if (j.contains("load_case")) plan_.load_case = read_load_case(*this, j.at("load_case"));
     for (const Json& c : list(j, "contact", "the file")) contact(c);
     return std::move(plan_);
   }
 
  private:
-  [[noreturn]] void bad(const std::string& what, const std::string& where) const {
-    fail_input(what, plan_.path + ", " + where, "docs/fem.md has the schema of a law file");
-  }
-  Json::object_t object(const Json& j, const std::string& where) const {
-    if (!j.is_object()) bad("an object in { } is needed", where);
-    return j.get<Json::object_t>();
-  }
-  void only(const Json& j, const std::string& where, const std::set<std::string>& known_keys) const {
-    for (const auto& [key, value] : object(j, where))
-      if (known_keys.count(key) == 0) bad("unknown entry \"" + key + "\"", where);
-  }
-  double number(const Json& j, const char* key, const std::string& where) const {
-    if (!j.contains(key)) bad(std::string("no \"") + key + "\"", where);
-    if (!j.at(key).is_number() || !std::isfinite(j.at(key).get<double>())) bad(std::string("\"") + key + "\" is no number", where);
-    return j.at(key).get<double>();
-  }
-  double number(const Json& j, const char* key, const std::string& where, double otherwise) const {
-    return j.contains(key) ? number(j, key, where) : otherwise;
-  }
-  std::string text(const Json& j, const char* key, const std::string& where) const {
-    if (!j.contains(key) || !j.at(key).is_string()) bad(std::string("no text \"") + key + "\"", where);
-    return j.at(key).get<std::string>();
-  }
-
   void units(const Json& j) {
     const std::string where = "units";
     if (!j.contains("units")) bad("no \"units\": the file must say {\"length\": \"mm\", \"force\": \"N\", \"stress\": \"MPa\"}", "the file");
@@ -205,18 +176,22 @@ class LawReader {
 
   void label_material(const std::string& name, const Json& j) {
     const std::string where = "label \"" + name + "\"";
-    only(j, where, {"comment", "source", "E_MPa", "law", "poisson", "density_t_mm3", "floor_MPa", "ceiling_MPa"});
     LabelMaterial m;
-    if (j.contains("E_MPa") == j.contains("law")) bad("exactly one of \"E_MPa\" and \"law\" is needed", where);
-    if (j.contains("E_MPa")) {
-      m.young_mpa = number(j, "E_MPa", where);
-      if (!(*m.young_mpa > 0)) bad("\"E_MPa\" is not above 0", where);
-      if (j.contains("floor_MPa") || j.contains("ceiling_MPa")) bad("a floor or ceiling is for a label with a law", where);
+    if (object(j, where).count("model") > 0) {
+      m = read_label_model(*this, j, where);
     } else {
-      m.law = text(j, "law", where);
-      take_known(m.law, where);
+      only(j, where, {"comment", "source", "E_MPa", "law", "poisson", "density_t_mm3", "floor_MPa", "ceiling_MPa"});
+      if (j.contains("E_MPa") == j.contains("law")) bad("exactly one of \"E_MPa\" and \"law\" is needed", where);
+      if (j.contains("E_MPa")) {
+        m.young_mpa = number(j, "E_MPa", where);
+        if (!(*m.young_mpa > 0)) bad("\"E_MPa\" is not above 0", where);
+        if (j.contains("floor_MPa") || j.contains("ceiling_MPa")) bad("a floor or ceiling is for a label with a law", where);
+      } else {
+        m.law = text(j, "law", where);
+        take_known(m.law, where);
+      }
+      m.poisson = poisson(j, where);
     }
-    m.poisson = poisson(j, where);
     if (j.contains("density_t_mm3")) {
       m.density_t_mm3 = number(j, "density_t_mm3", where);
       if (!(*m.density_t_mm3 >= 0)) bad("the density is negative", where);
@@ -256,63 +231,15 @@ class LawReader {
     m.bins = static_cast<int>(bins);
     if (j.contains("binning")) {
       const std::string how = text(j, "binning", where);
-      if (how != "equal_count" && how != "equal_modulus") bad("\"binning\" is neither \"equal_count\" nor \"equal_modulus\"", where);
-      m.equal_count = how == "equal_count";
-    }
-  }
-
-  std::vector<Json> list(const Json& j, const char* key, const std::string& where) const {
-    if (!j.contains(key)) return {};
-    if (!j.at(key).is_array()) bad(std::string("\"") + key + "\" is no list", where);
-    return j.at(key).get<std::vector<Json>>();
-  }
-
-  void load_case(const Json& j) {
-    const std::string where = "load_case";
-    only(j, where, {"comment", "fixed", "moved", "loaded"});
-    for (const Json& f : list(j, "fixed", where)) {
-      only(f, where + ", fixed", {"set", "axes"});
-      LoadCase::Held held{text(f, "set", where + ", fixed"), {}};
-      const std::string axes = f.contains("axes") ? text(f, "axes", where + ", fixed") : "xyz";
-      if (axes.empty() || axes.find_first_not_of("xyz") != std::string::npos) bad("\"axes\" is not some of xyz", where + ", fixed");
-      for (const char a : axes) held.value_mm[a - 'x'] = 0.0;
-      plan_.load_case.held.push_back(held);
-    }
-    for (const Json& m : list(j, "moved", where)) {
-      only(m, where + ", moved", {"set", "mm"});
-      LoadCase::Held held{text(m, "set", where + ", moved"), {}};
-      if (!m.contains("mm") || !m.at("mm").is_array() || m.at("mm").size() != 3) bad("\"mm\" is no list of three (a number or null)", where + ", moved");
-      bool any = false;
-      for (int axis = 0; axis < 3; ++axis) {
-        const Json& v = m.at("mm")[axis];
-        if (v.is_null()) continue;
-        if (!v.is_number()) bad("\"mm\" is no list of three (a number or null)", where + ", moved");
-        held.value_mm[axis] = v.get<double>();
-        any = true;
-      }
-      if (!any) bad("\"mm\" moves nothing", where + ", moved");
-      plan_.load_case.held.push_back(held);
-    }
-    for (const Json& l : list(j, "loaded", where)) {
-      only(l, where + ", loaded", {"set", "force_N", "pressure_MPa"});
-      LoadCase::Loaded loaded;
-      loaded.set = text(l, "set", where + ", loaded");
-      if (l.contains("force_N") == l.contains("pressure_MPa")) bad("exactly one of \"force_N\" and \"pressure_MPa\" is needed", where + ", loaded");
-      if (l.contains("force_N")) {
-        const Json& f = l.at("force_N");
-        if (!f.is_array() || f.size() != 3 || !f[0].is_number() || !f[1].is_number() || !f[2].is_number())
-          bad("\"force_N\" is no list of three numbers", where + ", loaded");
-        loaded.force_n = Vec3{f[0].get<double>(), f[1].get<double>(), f[2].get<double>()};
-      } else {
-        loaded.pressure_mpa = number(l, "pressure_MPa", where + ", loaded");
-      }
-      plan_.load_case.loaded.push_back(loaded);
+      if (how != "logarithmic" && how != "equal_count" && how != "equal_modulus")
+        bad("\"binning\" is none of \"logarithmic\", \"equal_count\" and \"equal_modulus\"", where);
+      m.binning = how == "logarithmic" ? Binning::logarithmic : how == "equal_count" ? Binning::equal_count : Binning::equal_modulus;
     }
   }
 
   void contact(const Json& j) {
     const std::string where = "contact";
-    only(j, where, {"comment", "source", "parts", "type", "friction", "stiffness_MPa_mm"});
+    only(j, where, {"comment", "source", "parts", "type", "friction", "stiffness_MPa_mm", "stabilise"});
     ContactLaw law;
     if (!j.contains("parts") || !j.at("parts").is_array() || j.at("parts").size() != 2 || !j.at("parts")[0].is_string() ||
         !j.at("parts")[1].is_string())
@@ -321,8 +248,10 @@ class LawReader {
     const std::string type = text(j, "type", where);
     if (type != "tie" && type != "contact" && type != "none") bad("\"type\" is none of \"tie\", \"contact\", \"none\"", where);
     law.contact = type == "tie" ? Contact::tie : type == "contact" ? Contact::contact : Contact::none;
-    if (law.contact != Contact::contact && (j.contains("friction") || j.contains("stiffness_MPa_mm")))
-      bad("\"friction\" and \"stiffness_MPa_mm\" are for type \"contact\"", where);
+    if (law.contact != Contact::contact && (j.contains("friction") || j.contains("stiffness_MPa_mm") || j.contains("stabilise")))
+      bad("\"friction\", \"stiffness_MPa_mm\" and \"stabilise\" are for type \"contact\"", where);
+    law.stabilise = number(j, "stabilise", where, 0);
+    if (!(law.stabilise >= 0 && law.stabilise <= 1)) bad("\"stabilise\" is no share from 0 to 1", where);
     law.friction = number(j, "friction", where, 0);
     if (!(law.friction >= 0)) bad("\"friction\" is negative", where);
     if (j.contains("stiffness_MPa_mm")) {

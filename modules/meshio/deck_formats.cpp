@@ -5,17 +5,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "meshio/abaqus_cards.h"
 #include "meshio/formats.h"
 #include "meshio/output_buffer.h"
 
 namespace stackmesh {
 namespace {
-
-/// Numbers, 16 a line.
-void write_list(OutputBuffer& out, const std::vector<std::int32_t>& from_zero) {
-  for (std::size_t i = 0; i < from_zero.size(); ++i)
-    out << from_zero[i] + 1 << (i + 1 == from_zero.size() ? "\n" : i % 16 == 15 ? ",\n" : ", ");
-}
 
 template <std::size_t N>
 void write_element(OutputBuffer& out, std::size_t number, const std::array<std::int32_t, N>& nodes, std::size_t count) {
@@ -28,42 +23,6 @@ std::vector<std::array<std::int32_t, 3>> shells_of_three_nodes(const PreparedMes
   const auto v = mesh.outward_face(face);
   if (!mesh.second_order()) return {{v[0], v[1], v[2]}};
   return {{v[0], v[3], v[5]}, {v[3], v[1], v[4]}, {v[5], v[4], v[2]}, {v[3], v[4], v[5]}};
-}
-
-void write_elastic(OutputBuffer& out, const std::string& name, double young_mpa, double poisson, double density_t_mm3) {
-  out << "*MATERIAL, NAME=" << name << "\n*ELASTIC\n";
-  out.print20(young_mpa);
-  out << ", ";
-  out.print20(poisson);
-  out << '\n';
-  if (density_t_mm3 <= 0) return;
-  out << "*DENSITY\n";
-  out.print20(density_t_mm3);
-  out << '\n';
-}
-
-/// Materials, with an element set each where a label has several, and sections.
-void write_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::vector<std::string>& label_sets, UniqueNames& element_sets) {
-  const SolverSets& sets = mesh.sets;
-  if (sets.placeholder_materials) return;  // this format can be read without
-  for (const ElementMaterial& m : sets.materials) {
-    std::string set;
-    for (std::size_t g = 0; g < mesh.labels.size(); ++g)
-      if (mesh.labels[g].label == m.label && mesh.labels[g].end - mesh.labels[g].begin == m.tets.size()) set = label_sets[g];
-    if (set.empty()) {
-      set = element_sets.add("E_" + m.name);
-      out << "*ELSET, ELSET=" << set << '\n';
-      write_list(out, m.tets);
-    }
-    write_elastic(out, m.name, m.young_mpa, m.poisson, m.density_t_mm3);
-    out << "*SOLID SECTION, ELSET=" << set << ", MATERIAL=" << m.name << '\n';
-  }
-  for (const ShellSet& s : sets.shells) {
-    write_elastic(out, "M_" + s.name, s.young_mpa, s.poisson, s.density_t_mm3);
-    out << "*SHELL SECTION, ELSET=" << s.name << ", MATERIAL=M_" << s.name << '\n';
-    out.print20(s.thickness_mm);
-    out << '\n';
-  }
 }
 
 /// What parts do to each other. Ties are equations of nodes that lie on each other: exact, while CalculiX's *TIE misses some nodes at the
@@ -92,31 +51,6 @@ void write_contact(OutputBuffer& out, const SolverSets& sets) {
     }
     out << "*CONTACT PAIR, INTERACTION=" << p.name << ", TYPE=SURFACE TO SURFACE\n" << p.primary << ", " << p.secondary << '\n';
   }
-}
-
-/// One static step with the supports and forces; where there is contact in up to ten increments.
-void write_step(OutputBuffer& out, const SolverSets& sets) {
-  if (!sets.has_load_case()) return;
-  out << "*STEP\n*STATIC\n";
-  if (sets.has_contact()) out << "0.1, 1.\n";
-  for (const Support& s : sets.supports)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!s.value_mm[axis]) continue;
-      out << "*BOUNDARY\n" << s.set << ", " << axis + 1 << ", " << axis + 1 << ", ";
-      out.print20(*s.value_mm[axis]);
-      out << '\n';
-    }
-  if (!sets.forces_n.empty()) out << "*CLOAD\n";
-  for (const auto& [node, force] : sets.forces_n) {
-    const double part[3] = {force.x, force.y, force.z};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (part[axis] == 0) continue;
-      out << node + 1 << ", " << axis + 1 << ", ";
-      out.print20(part[axis]);
-      out << '\n';
-    }
-  }
-  out << "*NODE FILE\nU, RF\n*EL FILE\nS, E\n*END STEP\n";
 }
 
 }  // namespace
@@ -168,7 +102,7 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
     if (i < sets.node_sets.size()) {
       if (!sets.node_sets[i].note.empty()) out << "** " << sets.node_sets[i].note << '\n';
       out << "*NSET, NSET=" << sets.node_sets[i].name << '\n';
-      write_list(out, sets.node_sets[i].nodes);
+      abaqus_list(out, sets.node_sets[i].nodes);
     }
     if (i < sets.surfaces.size()) {
       if (!sets.surfaces[i].note.empty()) out << "** " << sets.surfaces[i].note << '\n';
@@ -176,9 +110,10 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
       for (const TetFace f : sets.surfaces[i].faces) out << f.tet + 1 << ", S" << f.face + 1 << '\n';
     }
   }
-  write_materials(out, mesh, label_sets, element_sets);
+  abaqus_materials(out, mesh, label_sets, element_sets);
   write_contact(out, mesh.sets);
-  write_step(out, mesh.sets);
+  abaqus_points_and_springs(out, mesh, number);
+  abaqus_steps(out, mesh);
 }
 
 // Medit, ASCII; version 2 stands for doubles.

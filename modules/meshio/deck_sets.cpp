@@ -5,11 +5,8 @@
 #include "meshio/prepared_mesh.h"
 
 namespace stackmesh {
-namespace {
 
-/// For each triangle the tet of its label `below` (if that is 0, `above`) that has it as a face; every label
-/// of the triangle but 0 must have one.
-std::vector<TetFace> find_owners(const PreparedMesh& mesh) {
+std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides) {
   // Triangles listed by their smallest corner.
   const auto smallest = [](const auto& v) { return std::min({v[0], v[1], v[2]}); };
   std::vector<std::size_t> begins(mesh.points.size() + 1, 0);
@@ -22,7 +19,7 @@ std::vector<TetFace> find_owners(const PreparedMesh& mesh) {
   std::vector<std::size_t> next(begins.begin(), begins.end() - 1), listed(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) listed[next[smallest(mesh.triangles[i].v)]++] = i;
 
-  std::vector<TetFace> owners(mesh.triangles.size());
+  std::vector<TetFace> owners(mesh.triangles.size(), {-1, 0});
   std::vector<char> has_below(mesh.triangles.size(), 0), has_above(mesh.triangles.size(), 0);
   for (const LabelGroup& group : mesh.labels)
     for (std::size_t t = group.begin; t < group.end; ++t)
@@ -39,24 +36,24 @@ std::vector<TetFace> find_owners(const PreparedMesh& mesh) {
           const InterfaceTriangle& triangle = mesh.triangles[listed[k]];
           if (group.label != triangle.below && group.label != triangle.above) continue;
           if (!std::is_permutation(face.begin(), face.end(), triangle.v.begin())) continue;
-          (group.label == triangle.below ? has_below : has_above)[listed[k]] = 1;
-          if (group.label == (triangle.below != 0 ? triangle.below : triangle.above))
-            owners[listed[k]] = {static_cast<std::int32_t>(t), f};
+          const bool below = group.label == triangle.below;
+          (below ? has_below : has_above)[listed[k]] = 1;
+          if (below || has_below[listed[k]] == 0) owners[listed[k]] = {static_cast<std::int32_t>(t), f};
         }
       }
-  for (std::size_t i = 0; i < owners.size(); ++i)
-    if ((mesh.triangles[i].below != 0 && !has_below[i]) || (mesh.triangles[i].above != 0 && !has_above[i]))
+  for (std::size_t i = 0; i < owners.size(); ++i) {
+    const bool below = mesh.triangles[i].below == 0 || has_below[i] != 0, above = mesh.triangles[i].above == 0 || has_above[i] != 0;
+    if (owners[i].tet < 0 || (both_sides && !(below && above)))
       fail_internal("an interface triangle is not a face of a tet of each of its labels",
                     "triangle " + std::to_string(i) + " between labels " +
                         std::to_string(mesh.triangles[i].below) + " and " +
                         std::to_string(mesh.triangles[i].above));
+  }
   return owners;
 }
 
-}  // namespace
-
 void add_interface_sets(PreparedMesh& mesh) {
-  const std::vector<TetFace> owners = find_owners(mesh);
+  const std::vector<TetFace> owners = face_owners(mesh, true);
   UniqueNames node_sets(80), surfaces(80), materials(78);
   node_sets.add("NALL");
   for (const PairGroup& g : mesh.pairs) {

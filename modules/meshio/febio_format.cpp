@@ -2,13 +2,12 @@
 #include <string>
 #include <vector>
 
+#include "meshio/febio_steps.h"
 #include "meshio/formats.h"
 #include "meshio/output_buffer.h"
 
 namespace stackmesh {
 namespace {
-
-constexpr const char* kAxes = "xyz";
 
 /// FEBio 4 (febio_spec 4.0). Names are references, so every one is written by the function that also writes what it names.
 class FebioFile {
@@ -21,19 +20,18 @@ class FebioFile {
   void write() {
     out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n<!-- stackmesh; units: mm, N, MPa, t/mm3";
     if (!mesh_.space.empty()) out_ << "; " << mesh_.space_mark();
-    out_ << " -->\n<Module type=\"solid\">\n<units>mm-N-s</units>\n</Module>\n"
-            "<Control>\n<analysis>STATIC</analysis>\n";
-    out_ << (sets_.has_contact() ? "<time_steps>10</time_steps>\n<step_size>0.1</step_size>\n" : "<time_steps>1</time_steps>\n<step_size>1</step_size>\n");
-    out_ << "<solver type=\"solid\">\n<symmetric_stiffness>" << (has_friction() ? "non-symmetric" : "symmetric")
-         << "</symmetric_stiffness>\n</solver>\n</Control>\n";
+    out_ << " -->\n<Module type=\"solid\">\n<units>mm-N-s</units>\n</Module>\n";
+    FebioSteps steps(out_, mesh_);
+    steps.control();
     materials();
-    mesh();
+    mesh(steps);
     domains();
-    data();
-    boundary();
-    loads();
+    data(steps);
+    steps.acting();
     contact();
-    load_curve();
+    steps.springs();
+    steps.further();
+    steps.load_curves();
     out_ << "<Output>\n<plotfile type=\"febio\">\n<var type=\"displacement\"/>\n<var type=\"stress\"/>\n</plotfile>\n</Output>\n"
             "</febio_spec>\n";
   }
@@ -66,16 +64,7 @@ class FebioFile {
     int id = 0;
     for (std::size_t g = 0; g < parts_.size(); ++g) {
       const ElementMaterial& m = material_of(mesh_.labels[g].label);
-      out_ << "<material id=\"" << ++id << "\" name=\"M_" << parts_[g] << "\" type=\"isotropic elastic\">\n";
-      if (is_mapped(m.label)) {
-        if (has_density(g)) out_ << "<density type=\"map\">density_" << parts_[g] << "</density>\n";
-        out_ << "<E type=\"map\">E_" << parts_[g] << "</E>\n";
-      } else {
-        if (m.density_t_mm3 > 0) constant("density", m.density_t_mm3);
-        constant("E", m.young_mpa);
-      }
-      constant("v", m.poisson);
-      out_ << "</material>\n";
+      material(++id, g, m);
     }
     for (const ShellSet& s : sets_.shells) {
       out_ << "<material id=\"" << ++id << "\" name=\"M_" << s.name << "\" type=\"isotropic elastic\">\n";
@@ -84,7 +73,48 @@ class FebioFile {
       constant("v", s.poisson);
       out_ << "</material>\n";
     }
+    for (const RigidPoint& p : sets_.points)
+      out_ << "<material id=\"" << ++id << "\" name=\"" << p.name << "\" type=\"rigid body\">\n<density>1</density>\n<center_of_mass>" << p.at_mm.x << ',' << p.at_mm.y
+           << ',' << p.at_mm.z << "</center_of_mass>\n</material>\n";
     out_ << "</Material>\n";
+  }
+
+  void material(int id, std::size_t g, const ElementMaterial& m) {
+    const std::vector<double>& c = m.constants;
+    const auto begin = [&](const char* type) {
+      out_ << "<material id=\"" << id << "\" name=\"M_" << parts_[g] << "\" type=\"" << type << "\">\n";
+      if (!is_mapped(m.label) && m.density_t_mm3 > 0) constant("density", m.density_t_mm3);
+    };
+    switch (m.kind) {
+      case MaterialKind::linear:
+        begin("isotropic elastic");
+        if (is_mapped(m.label)) {
+          if (has_density(g)) out_ << "<density type=\"map\">density_" << parts_[g] << "</density>\n";
+          out_ << "<E type=\"map\">E_" << parts_[g] << "</E>\n";
+        } else {
+          constant("E", m.young_mpa);
+        }
+        constant("v", m.poisson);
+        break;
+      case MaterialKind::orthotropic:  // FEBio asks for nu31, Abaqus and the law file for nu13
+        begin("orthotropic elastic");
+        constant("E1", c[0]), constant("E2", c[1]), constant("E3", c[2]), constant("G12", c[6]), constant("G23", c[8]), constant("G31", c[7]);
+        constant("v12", c[3]), constant("v23", c[5]), constant("v31", c[4] * c[2] / c[0]);
+        break;
+      case MaterialKind::neo_hooke:  // FEBio's own neo-Hookean is another one: not uncoupled
+        begin("Mooney-Rivlin");
+        constant("c1", c[0]), constant("c2", 0), constant("k", c[1]);
+        break;
+      case MaterialKind::mooney_rivlin:
+        begin("Mooney-Rivlin");
+        constant("c1", c[0]), constant("c2", c[1]), constant("k", c[2]);
+        break;
+      case MaterialKind::holzapfel:
+        begin("Holzapfel-Gasser-Ogden");
+        constant("c", 2 * c[0]), constant("k1", c[1]), constant("k2", c[2]), constant("kappa", c[3]), constant("gamma", c[4]), constant("k", c[5]);
+        break;
+    }
+    out_ << "</material>\n";
   }
 
   template <class Nodes>
@@ -95,12 +125,12 @@ class FebioFile {
     }
   }
 
-  void mesh() {
+  void node(std::size_t number, Vec3 p) { out_ << "<node id=\"" << number << "\">" << p.x << ',' << p.y << ',' << p.z << "</node>\n"; }
+
+  void mesh(FebioSteps& steps) {
     out_ << "<Mesh>\n<Nodes name=\"NALL\">\n";
-    for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
-      const Vec3 p = mesh_.points[i];
-      out_ << "<node id=\"" << i + 1 << "\">" << p.x << ',' << p.y << ',' << p.z << "</node>\n";
-    }
+    for (std::size_t i = 0; i < mesh_.points.size(); ++i) node(i + 1, mesh_.points[i]);
+    steps.ground_nodes([&](std::size_t number, Vec3 p) { node(number, p); });
     out_ << "</Nodes>\n";
     const bool quadratic = mesh_.second_order();
     for (std::size_t g = 0; g < parts_.size(); ++g) {
@@ -128,11 +158,7 @@ class FebioFile {
       out_ << "</Elements>\n";
     }
     for (const NodeSet& s : sets_.node_sets) node_set(s.name, s.nodes);
-    if (!sets_.forces_n.empty()) {
-      std::vector<std::int32_t> nodes;
-      for (const auto& [node, force] : sets_.forces_n) nodes.push_back(node);
-      node_set("loaded_nodes", nodes);
-    }
+    steps.node_sets([&](const std::string& name, const std::vector<std::int32_t>& nodes) { node_set(name, nodes); });
     for (const FaceSet& s : sets_.surfaces) {
       out_ << "<Surface name=\"" << s.name << "\">\n";
       const char* tag = quadratic ? "tri6" : "tri3";
@@ -146,6 +172,7 @@ class FebioFile {
     for (const SurfacePair& p : sets_.pairs)
       out_ << "<SurfacePair name=\"" << p.name << "\">\n<primary>" << p.primary << "</primary>\n<secondary>" << p.secondary
            << "</secondary>\n</SurfacePair>\n";
+    steps.discrete_sets();
     out_ << "</Mesh>\n";
   }
 
@@ -167,8 +194,8 @@ class FebioFile {
   }
 
   /// The modulus of each element of a mapped label, and the forces on nodes.
-  void data() {
-    if (sets_.mapped.empty() && sets_.forces_n.empty()) return;
+  void data(FebioSteps& steps) {
+    if (sets_.mapped.empty() && sets_.axes.empty() && !steps.has_forces()) return;
     out_ << "<MeshData>\n";
     for (std::size_t g = 0; g < parts_.size(); ++g) {
       const LabelGroup& group = mesh_.labels[g];
@@ -182,33 +209,21 @@ class FebioFile {
       if (has_density(g)) map("density", sets_.density_t_mm3);
       map("E", sets_.modulus_mpa);
     }
-    if (!sets_.forces_n.empty()) {
-      out_ << "<NodeData name=\"nodal_forces\" node_set=\"loaded_nodes\" data_type=\"vec3\">\n";
-      for (std::size_t i = 0; i < sets_.forces_n.size(); ++i) {
-        const Vec3 f = sets_.forces_n[i].second;
-        out_ << "<node lid=\"" << i + 1 << "\">" << f.x << ',' << f.y << ',' << f.z << "</node>\n";
-      }
-      out_ << "</NodeData>\n";
-    }
+    for (std::size_t g = 0; g < parts_.size(); ++g) axes(g);
+    steps.node_data();
     out_ << "</MeshData>\n";
   }
 
-  void boundary() {
-    if (!sets_.has_load_case()) return;
-    out_ << "<Boundary>\n";
-    for (const Support& s : sets_.supports) support(s);
-    out_ << "</Boundary>\n";
-  }
-  void loads() {
-    if (!sets_.forces_n.empty())
-      out_ << "<Loads>\n<nodal_load name=\"load\" node_set=\"loaded_nodes\" type=\"nodal_force\">\n"
-              "<value lc=\"1\" type=\"map\">nodal_forces</value>\n</nodal_load>\n</Loads>\n";
-  }
-
-  bool has_friction() const {
-    for (const SurfacePair& p : sets_.pairs)
-      if (p.contact == Contact::contact && p.friction > 0) return true;
-    return false;
+  /// Material axes of a label's elements.
+  void axes(std::size_t g) {
+    const LabelGroup& group = mesh_.labels[g];
+    if (sets_.axes.empty() || norm(sets_.axes[group.begin][0]) == 0) return;
+    out_ << "<ElementData type=\"mat_axis\" elem_set=\"" << parts_[g] << "\">\n";
+    for (std::size_t t = group.begin; t < group.end; ++t) {
+      const auto& [a, d] = sets_.axes[t];
+      out_ << "<elem lid=\"" << t - group.begin + 1 << "\"><a>" << a.x << ',' << a.y << ',' << a.z << "</a><d>" << d.x << ',' << d.y << ',' << d.z << "</d></elem>\n";
+    }
+    out_ << "</ElementData>\n";
   }
 
   /// Ties are held by augmentation, contact by a penalty: the pressure per mm of penetration.
@@ -233,33 +248,10 @@ class FebioFile {
     if (any) out_ << "</Contact>\n";
   }
 
-  void load_curve() {
-    if (!sets_.has_load_case()) return;
-    out_ << "<LoadData>\n<load_controller id=\"1\" type=\"loadcurve\">\n<interpolate>LINEAR</interpolate>\n"
-            "<extend>CONSTANT</extend>\n<points>\n<pt>0,0</pt>\n<pt>1,1</pt>\n</points>\n</load_controller>\n</LoadData>\n";
-  }
-
-  void support(const Support& s) {
-    bool any_fixed = false;
-    for (const auto& v : s.value_mm) any_fixed = any_fixed || (v && *v == 0);
-    if (any_fixed) {
-      out_ << "<bc name=\"fixed_" << ++bcs_ << "\" node_set=\"" << s.set << "\" type=\"zero displacement\">\n";
-      for (int axis = 0; axis < 3; ++axis)
-        out_ << '<' << kAxes[axis] << "_dof>" << (s.value_mm[axis] && *s.value_mm[axis] == 0 ? '1' : '0') << "</" << kAxes[axis] << "_dof>\n";
-      out_ << "</bc>\n";
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!s.value_mm[axis] || *s.value_mm[axis] == 0) continue;
-      out_ << "<bc name=\"moved_" << ++bcs_ << "\" node_set=\"" << s.set << "\" type=\"prescribed displacement\">\n<dof>" << kAxes[axis]
-           << "</dof>\n<value lc=\"1\">" << *s.value_mm[axis] << "</value>\n<relative>0</relative>\n</bc>\n";
-    }
-  }
-
   OutputBuffer out_;
   const PreparedMesh& mesh_;
   const SolverSets& sets_;
   std::vector<std::string> parts_;
-  int bcs_ = 0;
 };
 
 }  // namespace

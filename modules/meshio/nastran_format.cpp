@@ -1,36 +1,20 @@
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "meshio/formats.h"
+#include "meshio/nastran_steps.h"
 #include "meshio/output_buffer.h"
 
 namespace stackmesh {
 namespace {
 
-/// A number in a field of 16 characters, with the point that Nastran wants: as many digits as fit.
-std::string field16(double value) {
-  if (value == 0) return "0.";
-  for (int digits = 17; digits > 0; --digits) {
-    char buffer[64];
-    const auto end = digits == 17 ? std::to_chars(buffer, buffer + sizeof buffer, value).ptr
-                                  : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
-    std::string text(buffer, end);
-    const std::size_t exponent = text.find('e');
-    if (text.find('.') == std::string::npos) text.insert(exponent == std::string::npos ? text.size() : exponent, ".");
-    if (const std::size_t e = text.find('e'); e != std::string::npos) text[e] = 'E';
-    if (text.size() <= 16) return text;
-  }
-  return "0.";
-}
-
 /// Bulk data: large fields (16 characters) for real numbers, small ones (8) for whole numbers.
-class NastranFile {
+class NastranFile : NastranFields {
  public:
-  NastranFile(std::FILE* file, const PreparedMesh& mesh) : out_(file), mesh_(mesh), sets_(mesh.sets) {
+  NastranFile(OutputBuffer& out, const PreparedMesh& mesh) : NastranFields(out), mesh_(mesh), sets_(mesh.sets), steps_(out, mesh) {
     if (mesh.points.size() > 99999999 || mesh.tets.size() > 99999999)
       fail_output("Nastran's numbers have at most 8 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
   }
@@ -38,30 +22,19 @@ class NastranFile {
   void write() {
     out_ << "$ stackmesh\n$ units: mm, N, MPa, t/mm3\n";
     if (!mesh_.space.empty()) out_ << "$ " << mesh_.space_mark() << '\n';
-    out_ << "SOL 101\nCEND\nTITLE = stackmesh\n";
+    out_ << "SOL " << steps_.solution() << "\nCEND\nTITLE = stackmesh\n";
     case_sets();
-    if (sets_.has_load_case()) {
-      out_ << "DISPLACEMENT = ALL\nSTRESS = ALL\nSUBCASE 1\n  SPC = 1\n";
-      if (!sets_.forces_n.empty() || moves()) out_ << "  LOAD = 2\n";
-    }
+    steps_.case_control();
     out_ << "BEGIN BULK\n";
     nodes();
     elements();
     materials();
     ties();
-    load_case();
+    steps_.bulk(number_, last_property_);
     out_ << "ENDDATA\n";
   }
 
  private:
-  void small(std::int64_t value) { padded(std::to_string(value), 8); }
-  void large(std::int64_t value) { padded(std::to_string(value), 16); }
-  void large(double value) { padded(field16(value), 16); }
-  void padded(const std::string& text, std::size_t width) {
-    for (std::size_t i = text.size(); i < width; ++i) out_ << ' ';
-    out_ << text;
-  }
-
   /// SET n = 1,2,3, ... in lines of at most 72 characters.
   void set(int number, const std::string& what, const std::vector<std::int64_t>& ids) {
     if (ids.empty()) return;
@@ -173,15 +146,66 @@ class NastranFile {
     out_ << '\n';
   }
 
+  /// A property and its material of one number.
+  void solid(std::int64_t id, const ElementMaterial& m) {
+    const bool hyperelastic = m.kind == MaterialKind::neo_hooke || m.kind == MaterialKind::mooney_rivlin;
+    out_ << (hyperelastic ? "PLSOLID " : "PSOLID  ");
+    small(id);
+    small(id);
+    if (m.kind == MaterialKind::orthotropic && has_one_frame(m)) {  // its axes are a frame's of the same number
+      small(id);
+      out_ << '\n';
+      orthotropic(id, m);
+      return;
+    }
+    out_ << '\n';
+    if (!hyperelastic) return material(id, m.young_mpa, m.poisson, m.density_t_mm3);
+    const double c01 = m.kind == MaterialKind::mooney_rivlin ? m.constants[1] : 0;
+    out_ << "MATHP*  ";
+    large(id);
+    large(m.constants[0]);
+    large(c01);
+    large(m.constants.back() / 2);
+    out_ << "\n*       ";
+    large(m.density_t_mm3);
+    out_ << '\n';
+  }
+
+  bool has_one_frame(const ElementMaterial& m) const {
+    const auto& axes = sets_.axes;
+    for (const std::int32_t t : m.tets)
+      if (norm(axes[t][0] - axes[m.tets[0]][0]) + norm(axes[t][1] - axes[m.tets[0]][1]) > 0) return false;
+    return true;
+  }
+
+  void orthotropic(std::int64_t id, const ElementMaterial& m) {
+    const auto& [a, b] = sets_.axes[m.tets[0]];
+    const Vec3 z = cross(a, b);
+    out_ << "CORD2R* ";  // origin, a point on its z axis, a point in its xz plane
+    large(id);
+    padded("", 16);
+    large(0.0), large(0.0);
+    out_ << "\n*       ";
+    large(0.0), large(z.x), large(z.y), large(z.z);
+    out_ << "\n*       ";
+    large(a.x), large(a.y), large(a.z);
+    out_ << '\n' << "MAT11*  ";
+    large(id);
+    const std::vector<double>& c = m.constants;
+    large(c[0]), large(c[1]), large(c[2]);
+    out_ << "\n*       ";
+    large(c[3]), large(c[4]), large(c[5]), large(c[6]);
+    out_ << "\n*       ";
+    large(c[7]), large(c[8]), large(m.density_t_mm3);
+    out_ << '\n';
+  }
+
   void materials() {
     if (sets_.placeholder_materials) out_ << "$ No material law was given: E = 1 MPa and a nu = 0.3 hold the place.\n";
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const ElementMaterial& m = sets_.materials[i];
-      out_ << "$ " << m.name << '\n' << "PSOLID  ";
-      small(ids_[i]);
-      small(ids_[i]);
-      out_ << '\n';
-      material(ids_[i], m.young_mpa, m.poisson, m.density_t_mm3);
+      out_ << "$ " << m.name << '\n';
+      solid(ids_[i], m);
     }
     std::int64_t id = shell_;
     for (const ShellSet& s : sets_.shells) {
@@ -198,8 +222,9 @@ class NastranFile {
 
   /// Nodes that follow another one at the same place: a rigid element each.
   void ties() {
-    std::int64_t number = static_cast<std::int64_t>(mesh_.tets.size());
+    std::int64_t& number = number_ = static_cast<std::int64_t>(mesh_.tets.size());
     for (const ShellSet& s : sets_.shells) number += static_cast<std::int64_t>(s.faces.size());
+    last_property_ = shell_ + static_cast<std::int64_t>(sets_.shells.size());
     for (const Tie& t : sets_.ties) {
       out_ << "$ " << t.name << '\n';
       for (const Tie::Node& n : t.nodes) {
@@ -218,68 +243,19 @@ class NastranFile {
       if (p.contact != Contact::tie) out_ << "$ surfaces that face each other, without contact here: " << p.primary << " and " << p.secondary << '\n';
   }
 
-  bool moves() const {
-    for (const Support& s : sets_.supports)
-      for (const auto& v : s.value_mm)
-        if (v && *v != 0) return true;
-    return false;
-  }
-
-  const NodeSet& nodes_of(const Support& support) const {
-    for (const NodeSet& s : sets_.node_sets)
-      if (s.name == support.set) return s;
-    fail_internal("a support names a set that is not there", support.set);
-  }
-
-  /// SPC1 holds degrees of freedom; a displacement that is not 0 is an SPCD beside it.
-  void load_case() {
-    for (const Support& s : sets_.supports) {
-      const std::vector<std::int32_t>& nodes = nodes_of(s).nodes;
-      std::string axes;
-      for (int axis = 0; axis < 3; ++axis)
-        if (s.value_mm[axis]) axes += static_cast<char>('1' + axis);
-      for (std::size_t i = 0; i < nodes.size(); i += 6) {
-        out_ << "SPC1    ";
-        small(1);
-        padded(axes, 8);
-        for (std::size_t k = i; k < std::min(i + 6, nodes.size()); ++k) small(static_cast<std::int64_t>(nodes[k]) + 1);
-        out_ << '\n';
-      }
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!s.value_mm[axis] || *s.value_mm[axis] == 0) continue;
-        for (const std::int32_t v : nodes) {
-          out_ << "SPCD*   ";
-          large(std::int64_t{2});
-          large(static_cast<std::int64_t>(v) + 1);
-          large(static_cast<std::int64_t>(axis) + 1);
-          large(*s.value_mm[axis]);
-          out_ << "\n*       \n";
-        }
-      }
-    }
-    for (const auto& [node, force] : sets_.forces_n) {
-      out_ << "FORCE*  ";
-      large(std::int64_t{2});
-      large(static_cast<std::int64_t>(node) + 1);
-      large(std::int64_t{0});
-      large(1.0);
-      out_ << "\n*       ";
-      large(force.x);
-      large(force.y);
-      large(force.z);
-      out_ << '\n';
-    }
-  }
-
-  OutputBuffer out_;
   const PreparedMesh& mesh_;
   const SolverSets& sets_;
   std::vector<std::int64_t> ids_;  // of properties and materials
   std::int64_t shell_ = 0;         // the last number before those of the skins
+  std::int64_t number_ = 0, last_property_ = 0;  // of the last element and property so far
+  NastranSteps steps_;
 };
 
 }  // namespace
 
-void write_bdf(std::FILE* file, const PreparedMesh& mesh) { NastranFile(file, mesh).write(); }
+void write_bdf(std::FILE* file, const PreparedMesh& mesh) {
+  OutputBuffer out(file);
+  NastranFile(out, mesh).write();
+}
 
 }  // namespace stackmesh

@@ -54,6 +54,11 @@ PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path);
 PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& options, const std::string& path);
 
+/// For each triangle the tet of its label `below` (where there is none, `above`) that has it as a face.
+/// @param both_sides every label of a triangle but 0 must have such a tet; else one of them (parts have nodes of their own)
+/// @throws Error(internal) where that is not so
+std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides);
+
 /// A node set and a face set for each pair of labels, and a placeholder material for each label.
 void add_interface_sets(PreparedMesh& mesh);
 

@@ -96,7 +96,8 @@ class XmlFile {
   std::uint64_t offset_ = 0;
 };
 
-/// Cell data of the tets followed by the triangles.
+/// Cell data of the tets followed by the triangles. A triangle has the label of the tet behind it (of two, that of `below`), so
+/// that a viewer, which draws both, shows one colour.
 struct CellLabels {
   std::vector<std::int32_t> label, below, above;
 
@@ -104,7 +105,11 @@ struct CellLabels {
     const std::size_t cells = mesh.tets.size() + mesh.triangles.size();
     label.reserve(cells);
     for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.end - g.begin, g.label);
-    label.resize(cells, 0);
+    if (mesh.sets.parts.empty()) {
+      for (const PairGroup& g : mesh.pairs) label.insert(label.end(), g.end - g.begin, g.below != 0 ? g.below : g.above);
+    } else {  // each part has its own side
+      for (const TetFace f : face_owners(mesh, false)) label.push_back(label[f.tet]);
+    }
     below.assign(mesh.tets.size(), -1);
     above.assign(mesh.tets.size(), -1);
     for (const PairGroup& g : mesh.pairs) {
@@ -135,27 +140,43 @@ struct Connectivity {
   }
 };
 
-/// What a solver model has per cell: modulus, density, element quality, thickness of skins (0 where there is none).
+/// What a solver model has per cell: modulus, density, element quality, fibres, thickness of skins (0 where there is none). Triangles have
+/// what the tet behind them has.
 struct CellFields {
-  std::vector<std::pair<std::string, std::vector<double>>> list;
+  struct Field {
+    std::string name;
+    int components;
+    std::vector<double> values;
+  };
+  std::vector<Field> list;
 
   explicit CellFields(const PreparedMesh& mesh) {
     const SolverSets& sets = mesh.sets;
-    const auto add = [&](const std::string& name, std::vector<double> of_tets) {
-      of_tets.resize(mesh.tets.size() + mesh.triangles.size(), 0);
-      list.emplace_back(name, std::move(of_tets));
+    const std::size_t cells = mesh.tets.size() + mesh.triangles.size();
+    std::vector<TetFace> behind;
+    if (!sets.modulus_mpa.empty() || !sets.quality.empty()) behind = face_owners(mesh, false);
+    const auto add = [&](const std::string& name, std::vector<double> of_tets, int components = 1) {
+      of_tets.reserve(static_cast<std::size_t>(components) * cells);
+      for (const TetFace f : behind)
+        for (int c = 0; c < components; ++c) of_tets.push_back(of_tets[static_cast<std::size_t>(components) * f.tet + c]);
+      list.push_back({name, components, std::move(of_tets)});
     };
     if (!sets.modulus_mpa.empty()) add("modulus_MPa", sets.modulus_mpa);
     if (!sets.density_t_mm3.empty()) add("density_t_mm3", sets.density_t_mm3);
     if (!sets.quality.empty()) add("scaled_jacobian", sets.quality);
-    if (!sets.shells.empty()) add("skin_mm", std::vector<double>());
+    if (!sets.axes.empty()) {
+      std::vector<double> fibre;
+      for (const auto& [along, across] : sets.axes) fibre.insert(fibre.end(), {along.x, along.y, along.z});
+      add("fibre", std::move(fibre), 3);
+    }
+    if (!sets.shells.empty()) list.push_back({"skin_mm", 1, std::vector<double>(cells, 0)});
     for (const ShellSet& s : sets.shells) {
       std::map<std::array<std::int32_t, 3>, std::size_t> cell_of;
       for (std::size_t i = 0; i < mesh.triangles.size(); ++i) cell_of[sorted(mesh.triangles[i].v)] = mesh.tets.size() + i;
       for (const TetFace f : s.faces) {
         const std::array<std::int32_t, 6> nodes = mesh.outward_face(f);
         const auto found = cell_of.find(sorted({nodes[0], nodes[1], nodes[2]}));
-        if (found != cell_of.end()) list.back().second[found->second] = s.thickness_mm;
+        if (found != cell_of.end()) list.back().values[found->second] = s.thickness_mm;
       }
     }
   }
@@ -208,7 +229,7 @@ void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
   xml.array("label", cells.label, "Int32");
   xml.array("label_below", cells.below, "Int32");
   xml.array("label_above", cells.above, "Int32");
-  for (const auto& [name, values] : fields.list) xml.array(name, values, "Float64");
+  for (const auto& [name, components, values] : fields.list) xml.array(name, values, "Float64", components);
   xml << "</CellData>\n";
   add_points(xml, mesh);
   xml << "<Cells>\n";
@@ -253,8 +274,8 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
   field("label", cells.label);
   field("label_below", cells.below);
   field("label_above", cells.above);
-  for (const auto& [name, values] : fields.list) {
-    out << name << " 1 " << count << " double\n";
+  for (const auto& [name, components, values] : fields.list) {
+    out << name << ' ' << components << ' ' << count << " double\n";
     for (const double v : values) out.big_endian(v);
     out << '\n';
   }

@@ -94,6 +94,32 @@ void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& me
   files.write(path, [&](std::FILE* file) { writer(file, prepared); });
 }
 
+std::vector<std::string> losses_of(const std::string& path, const SolverModel& model) {
+  const Writer writer = find_writer(kVolumeFormats, path);
+  const SolverSets& sets = model.sets;
+  std::vector<std::string> losses;
+  const auto any_material = [&](MaterialKind kind) {
+    return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind == kind; });
+  };
+  const auto any_step = [&](Analysis analysis) {
+    return std::any_of(sets.steps.begin(), sets.steps.end(), [&](const LoadStep& s) { return s.analysis == analysis; });
+  };
+  if (writer == write_inp && any_material(MaterialKind::holzapfel))
+    losses.push_back(path + ": CalculiX has no Holzapfel-Gasser-Ogden material; the deck is for Abaqus");
+  if (writer == write_feb && any_step(Analysis::frequency)) losses.push_back(path + ": FEBio finds no natural frequencies; these steps are left out");
+  if (writer == write_bdf) {
+    if (any_step(Analysis::frequency) && any_step(Analysis::statics))
+      losses.push_back(path + ": a Nastran deck has one solution sequence; the frequency steps are written, the static ones left out");
+    if (any_material(MaterialKind::holzapfel)) losses.push_back(path + ": Nastran has no Holzapfel-Gasser-Ogden material; the label gets its isotropic one at small strain");
+    for (const ElementMaterial& m : sets.materials)
+      if (m.kind == MaterialKind::orthotropic &&
+          std::any_of(m.tets.begin(), m.tets.end(), [&](std::int32_t t) { return norm(sets.axes[t][0] - sets.axes[m.tets[0]][0]) > 0; }))
+        losses.push_back(path + ": fibres that turn from element to element are not written; label " + std::to_string(m.label) + " gets an isotropic material");
+    if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
+  }
+  return losses;
+}
+
 void write_model(AtomicFiles& files, const std::string& path, const SolverModel& model, const MeshWriteOptions& options) {
   Writer writer = need_writer(kVolumeFormats, path, "volume");
   if (writer == write_msh4 && options.msh2) writer = write_msh2;

@@ -45,6 +45,9 @@ void write_surface(AtomicFiles& files, const std::string& path, const InterfaceC
 void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
                   const MeshWriteOptions& options = {});
 
+/// What the format of a path's ending cannot carry of a model, a sentence each; empty: nothing is lost.
+std::vector<std::string> losses_of(const std::string& path, const SolverModel& model);
+
 /// Writes a solver model, in mm as it is, in the volume format of the path's ending: sets, materials and load case in the decks
 /// (.inp .feb .bdf), named surfaces as physical groups in .msh, modulus, density and quality per cell in .vtu and .vtk.
 /// Elements and nodes have the same numbers in every format. The caller commits `files`. @throws as write_volume();

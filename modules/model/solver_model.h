@@ -48,6 +48,7 @@ struct SurfacePair {
   Contact contact = Contact::none;
   double stiffness_mpa_mm = 0;  ///< of contact: pressure per mm of penetration
   double friction = 0;          ///< coefficient of contact
+  double stabilise = 0;         ///< springs to the ground on unsupported parts, as a share of the contact's stiffness
 };
 
 /// Nodes of one part that go where the nodes at the same places go in another part.
@@ -60,12 +61,23 @@ struct Tie {
   std::vector<Node> nodes;  ///< ascending
 };
 
+/// How a material answers.
+enum class MaterialKind {
+  linear,         ///< isotropic: Young's modulus and Poisson's ratio
+  orthotropic,    ///< constants: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; axis 1 is the fibre
+  neo_hooke,      ///< constants: C10, bulk modulus K
+  mooney_rivlin,  ///< constants: C10, C01, bulk modulus K
+  holzapfel,      ///< Holzapfel-Gasser-Ogden; constants: C10, k1, k2 (none), kappa (none), angle of the fibres to axis 1 (degrees), K
+};
+
 /// Elements of one material. A label with a mapped modulus has one for each of its bins.
 struct ElementMaterial {
   std::string name;
   Label label = 0;
-  double young_mpa = 0, poisson = 0, density_t_mm3 = 0;
+  double young_mpa = 0, poisson = 0, density_t_mm3 = 0;  ///< of kinds that are not linear: those at small strain
   std::vector<std::int32_t> tets;  ///< ascending
+  MaterialKind kind = MaterialKind::linear;
+  std::vector<double> constants;   ///< MPa where they have a unit; as the kind says
 };
 
 /// Shells on faces of tets, sharing their nodes.
@@ -83,7 +95,59 @@ struct Support {
   std::array<std::optional<double>, 3> value_mm;  ///< per axis; unset: free
 };
 
-/// What a solver is told beside the mesh: sets, materials, one load case.
+/// A pressure against the faces of a set. It follows them where the analysis minds large displacements.
+struct Pressure {
+  std::string set;  ///< of faces
+  double mpa = 0;
+};
+
+/// A point to which the nodes of a set are bound as a rigid body. Its number follows those of the mesh's nodes.
+struct RigidPoint {
+  std::string name, set;  ///< of nodes, and of faces
+  Vec3 at_mm;
+};
+
+/// What is done to a rigid point: displacements (mm) and rotations (rad), or a force (N) and a moment (N mm).
+struct PointSupport {
+  std::int32_t point = 0;  ///< in SolverSets::points
+  std::array<std::optional<double>, 6> value;
+};
+struct PointLoad {
+  std::int32_t point = 0;
+  Vec3 force_n, moment_nmm;
+};
+
+/// A spring from a node to the ground, along a direction.
+struct GroundSpring {
+  std::int32_t node = 0;
+  Vec3 direction;       ///< unit
+  double n_per_mm = 0;  ///< above 0
+};
+struct SpringSet {
+  std::string name;
+  std::vector<GroundSpring> springs;
+};
+
+enum class Analysis { statics, frequency };
+
+/// One step of an analysis. It says all that acts in it: what a step before it held or loaded and it does not, is free again.
+struct LoadStep {
+  std::string name;
+  Analysis analysis = Analysis::statics;
+  bool large_displacements = false;
+  int increments = 0;  ///< to begin with; 0: one, or ten where it is not linear
+  int modes = 0;       ///< of a frequency step
+  std::vector<Support> supports;
+  std::vector<PointSupport> point_supports;
+  std::vector<std::pair<std::int32_t, Vec3>> forces_n;  ///< on nodes, ascending
+  std::vector<PointLoad> point_loads;
+  std::vector<Pressure> pressures;
+  Vec3 gravity_mm_s2;  ///< acceleration of every body; 0: none
+
+  bool has_loads() const { return !forces_n.empty() || !point_loads.empty() || !pressures.empty() || norm(gravity_mm_s2) > 0; }
+};
+
+/// What a solver is told beside the mesh: sets, materials, what acts.
 struct SolverSets {
   std::vector<NodeSet> node_sets;
   std::vector<FaceSet> surfaces;
@@ -98,13 +162,17 @@ struct SolverSets {
   std::vector<double> modulus_mpa;         ///< per tet, not binned; empty: none
   std::vector<double> density_t_mm3;       ///< per tet
   std::vector<double> quality;             ///< scaled Jacobian per tet (modules/validate); empty: not measured
+  std::vector<std::array<Vec3, 2>> axes;   ///< per tet: fibre and, across it, sheet (unit); both 0 where it has none; empty: no tet has
   std::vector<ShellSet> shells;
-  std::vector<Support> supports;
-  std::vector<std::pair<std::int32_t, Vec3>> forces_n;  ///< on nodes, ascending
+  std::vector<RigidPoint> points;
+  std::vector<SpringSet> springs;
+  std::vector<LoadStep> steps;             ///< in sequence
   bool has_contact() const {
     return std::any_of(pairs.begin(), pairs.end(), [](const SurfacePair& p) { return p.contact == Contact::contact; });
   }
-  bool has_load_case() const { return !supports.empty() || !forces_n.empty(); }
+  bool is_hyperelastic() const {
+    return std::any_of(materials.begin(), materials.end(), [](const ElementMaterial& m) { return m.kind >= MaterialKind::neo_hooke; });
+  }
 };
 
 /// A mesh with what a solver needs. Its tets are grouped by ascending label, no point is unused.

@@ -1,10 +1,12 @@
 #include "pipeline/fem_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/error.h"
 #include "fem/assign_materials.h"
+#include "fem/check_supports.h"
 #include "fem/element_quality.h"
 #include "fem/join_parts.h"
 #include "fem/label_table.h"
@@ -20,6 +22,7 @@
 #include "report/html_report.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
+#include "volume/refine_tets.h"
 
 namespace stackmesh {
 namespace {
@@ -78,6 +81,12 @@ class FemRun {
       OrderOptions order;
       order.threads = o_.mesh.threads;
       clock.run("volume", [&] { product.mesh = raise_order(std::move(product.mesh), order).mesh; });
+    }
+    if (o_.mesh.refine > 0) {
+      const double tets = static_cast<double>(product.mesh.tets.size()) * std::pow(8, o_.mesh.refine);
+      if (!o_.mesh.many_tets && tets > 1e7)
+        fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
+      clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.refine); });
     }
     clock.run("write", [&] { model(std::move(product), report, files); });
     report.peak_rss_mb = peak_memory_mb();
@@ -255,12 +264,19 @@ class FemRun {
     if (plan_) join.laws = &plan_->contacts;
     join.path = o_.materials;
     join_parts(model, join);
+    check_supports(model, o_.materials);
     report.fem = summary(model, materials);
+    if (model.mesh.mid.empty() && !model.sets.steps.empty())
+      report.warnings.push_back("linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
+                                "take --order 2 for figures that are to be relied on");
 
     MeshWriteOptions write = o_.mesh.write;
     write.space = product.space;
-    for (const std::string& path : o_.mesh.outputs)
-      if (is_volume_format(path)) write_model(files, path, model, write);
+    for (const std::string& path : o_.mesh.outputs) {
+      if (!is_volume_format(path)) continue;
+      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
+      write_model(files, path, model, write);
+    }
   }
 
   FemReport summary(const SolverModel& model, const MaterialReport& materials) const {
@@ -283,10 +299,37 @@ class FemRun {
       f.skins.push_back({s.name, s.thickness_mm});
       f.shells += s.faces.size();
     }
-    f.supports = model.sets.supports.size();
-    f.loaded_nodes = model.sets.forces_n.size();
-    for (const auto& [node, force] : model.sets.forces_n) f.force_n = f.force_n + force;
+    f.bodies = bodies_of(model);
+    for (const LoadStep& s : model.sets.steps) f.steps.push_back(summary(model, s));
+    if (!f.steps.empty()) {
+      f.supports = f.steps[0].supports;
+      f.loaded_nodes = f.steps[0].loaded_nodes;
+      f.force_n = f.steps[0].force_n;
+    }
     return f;
+  }
+
+  static FemStep summary(const SolverModel& model, const LoadStep& s) {
+    FemStep out;
+    out.name = s.name;
+    out.frequency = s.analysis == Analysis::frequency;
+    out.large_displacements = s.large_displacements || model.sets.is_hyperelastic();
+    out.supports = s.supports.size() + s.point_supports.size();
+    std::set<std::int32_t> loaded;
+    for (const auto& [node, force] : s.forces_n) {
+      loaded.insert(node);
+      out.force_n = out.force_n + force;
+    }
+    for (const PointLoad& l : s.point_loads) out.force_n = out.force_n + l.force_n;
+    for (const Pressure& p : s.pressures) {
+      out.force_n = out.force_n + force_of(model, p);
+      for (const NodeSet& set : model.sets.node_sets)
+        if (set.name == p.set) loaded.insert(set.nodes.begin(), set.nodes.end());
+    }
+    out.loaded_nodes = loaded.size() + s.point_loads.size();
+    out.pressures = s.pressures.size();
+    out.gravity_mm_s2 = s.gravity_mm_s2;
+    return out;
   }
 
   const FemRunOptions& o_;

@@ -21,6 +21,7 @@
 #include "pipeline/volume_sections.h"
 #include "stitch/drawn_detail.h"
 #include "volume/raise_order.h"
+#include "volume/refine_tets.h"
 
 namespace stackmesh {
 namespace {
@@ -321,6 +322,7 @@ class MeshRun {
       report_.closure = "verified";
       mesh_ = std::move(result.mesh);
       if (o_.order == 2) raise();
+      if (o_.refine > 0) refine();
     } else {
       report_.closure = "failed";
       refusal_ = "the volume mesher did not fill the surface (" + result.message + ")";
@@ -344,6 +346,14 @@ class MeshRun {
     options.threads = o_.threads;
     options.volumes_restored = report_.surface_level == "enhanced";
     mesh_ = raise_order(std::move(*mesh_), options).mesh;
+  }
+
+  /// The finer surface takes the place of the coarse one once it has passed the same checks.
+  void refine() {
+    refuse_too_many(static_cast<double>(mesh_->tets.size()) * std::pow(8, o_.refine));
+    mesh_ = refine_tets(std::move(*mesh_), o_.refine);
+    take(judge(surface_of(*mesh_), o_.threads));
+    if (!is_sound()) mend_ = "leave --refine out, or use --order 1: curved sides cut into flat ones touch here";
   }
 
   /// Stack coordinates to LPS; a mirrored frame turns triangles and tets inside out, so they are turned back.

@@ -38,6 +38,7 @@ struct MeshRunOptions {
   std::vector<std::pair<std::string, double>> label_volumes_text;
   bool many_tets = false;                         ///< more than 10 million tetrahedra are wanted
   int order = 1;                                  ///< of the tetrahedra: 1 linear, 2 quadratic (10 nodes)
+  int refine = 0;                                 ///< how often every tetrahedron is cut into eight, at the end
   std::string space = "lps";                      ///< "lps" or "ras"
   std::vector<std::string> names_outputs;         ///< .json files for the labels' numbers, names and colours
   std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format

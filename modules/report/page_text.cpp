@@ -171,9 +171,19 @@ std::string model_tables(const FemReport& f) {
     }
     out += end;
   }
-  if (f.supports + f.loaded_nodes > 0)
-    out += "<p>Load case: " + grouped(f.supports) + " supports, " + grouped(f.loaded_nodes) + " loaded nodes, force in all (" + number(f.force_n.x) + ", " + number(f.force_n.y) + ", " +
-           number(f.force_n.z) + ") N.</p>\n";
+  if (f.bodies.size() > 1) {
+    out += table_head("Bodies: tetrahedra that share faces; a load case must hold each of them", {"*Label", "elements", "volume, mm\xc2\xb3", "*centre, mm"});
+    for (std::size_t i = 0; i < f.bodies.size() && i < 100; ++i) {
+      const Body& b = f.bodies[i];
+      out += head(std::to_string(b.label) + " " + b.name) + cell(static_cast<double>(b.tets), 6) + cell(b.volume_mm3, 4) +
+             text_cell(number(b.centre.x) + ", " + number(b.centre.y) + ", " + number(b.centre.z)) + "</tr>\n";
+    }
+    out += end;
+  }
+  for (const FemStep& s : f.steps)
+    out += "<p>" + escaped(f.steps.size() > 1 ? "Step " + s.name : std::string("Load case")) + ": " + grouped(s.supports) + " supports, " +
+           (s.frequency ? "natural frequencies" : grouped(s.loaded_nodes) + " loaded nodes, force in all (" + number(s.force_n.x) + ", " + number(s.force_n.y) + ", " + number(s.force_n.z) + ") N") +
+           (norm(s.gravity_mm_s2) > 0 ? ", gravity" : "") + (s.large_displacements ? ", large displacements" : "") + ".</p>\n";
   return out;
 }
 

@@ -153,6 +153,17 @@ Json provenance(const std::optional<Provenance>& p) {
           {"finished_utc", p->finished_utc}};
 }
 
+const char* model_name(MaterialKind kind) {
+  switch (kind) {
+    case MaterialKind::linear: return "linear";
+    case MaterialKind::orthotropic: return "orthotropic";
+    case MaterialKind::neo_hooke: return "neo_hooke";
+    case MaterialKind::mooney_rivlin: return "mooney_rivlin";
+    case MaterialKind::holzapfel: return "holzapfel";
+  }
+  return "";
+}
+
 Json fem(const FemReport& f) {
   Json sets = Json::array(), pairs = Json::array(), materials = Json::array(), skins = Json::array();
   for (const FemSet& s : f.sets) sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
@@ -162,6 +173,7 @@ Json fem(const FemReport& f) {
     if (p.contact == Contact::contact) {
       row["stiffness_mpa_mm"] = p.stiffness_mpa_mm;
       row["friction"] = p.friction;
+      row["stabilise"] = p.stabilise;
     }
     pairs.push_back(row);
   }
@@ -169,6 +181,7 @@ Json fem(const FemReport& f) {
     materials.push_back({{"label", m.label},
                          {"name", m.name},
                          {"law", m.law.empty() ? Json(nullptr) : Json(m.law)},
+                         {"model", model_name(m.kind)},
                          {"elements", m.elements},
                          {"modulus_min_mpa", m.young_min_mpa},
                          {"modulus_mean_mpa", m.young_mean_mpa},
@@ -180,6 +193,18 @@ Json fem(const FemReport& f) {
                          {"materials", m.materials},
                          {"bin_error_max_rel", m.bin_error_rel},
                          {"voxels", m.voxels}});
+  Json steps = Json::array(), bodies = Json::array();
+  for (const Body& b : f.bodies)
+    bodies.push_back({{"label", b.label}, {"name", b.name}, {"elements", b.tets}, {"volume_mm3", b.volume_mm3}, {"centre_mm", {b.centre.x, b.centre.y, b.centre.z}}});
+  for (const FemStep& s : f.steps)
+    steps.push_back({{"name", s.name},
+                     {"type", s.frequency ? "frequency" : "static"},
+                     {"large_displacements", s.large_displacements},
+                     {"supports", s.supports},
+                     {"loaded_nodes", s.loaded_nodes},
+                     {"pressures", s.pressures},
+                     {"force_n", {s.force_n.x, s.force_n.y, s.force_n.z}},
+                     {"gravity_mm_s2", {s.gravity_mm_s2.x, s.gravity_mm_s2.y, s.gravity_mm_s2.z}}});
   for (const auto& [name, thickness] : f.skins) skins.push_back({{"name", name}, {"thickness_mm", thickness}});
   return {{"order", f.order},
           {"nodes", f.nodes},
@@ -193,7 +218,8 @@ Json fem(const FemReport& f) {
           {"pairs", pairs},
           {"materials", materials},
           {"skins", skins},
-          {"load_case", {{"supports", f.supports}, {"loaded_nodes", f.loaded_nodes}, {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}}}}};
+          {"bodies", bodies},
+          {"load_case", {{"supports", f.supports}, {"loaded_nodes", f.loaded_nodes}, {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}}, {"steps", steps}}}};
 }
 
 }  // namespace

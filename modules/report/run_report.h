@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fem/assign_materials.h"
+#include "fem/check_supports.h"
 #include "model/geometry.h"
 #include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
@@ -76,6 +77,15 @@ struct FemSet {
   std::size_t nodes = 0, faces = 0;  ///< faces 0: a node set only
 };
 
+/// A step of a solver model.
+struct FemStep {
+  std::string name;
+  bool frequency = false, large_displacements = false;
+  std::size_t supports = 0, loaded_nodes = 0, pressures = 0;
+  Vec3 force_n;        ///< sum of all forces and pressures, on the faces as they lie; without gravity
+  Vec3 gravity_mm_s2;
+};
+
 /// The solver model of `stackmesh fem`.
 struct FemReport {
   int order = 2;
@@ -86,8 +96,10 @@ struct FemReport {
   std::vector<SurfacePair> pairs;
   std::vector<MaterialRow> materials;
   std::vector<std::pair<std::string, double>> skins;  ///< name, thickness in mm
-  std::size_t supports = 0, loaded_nodes = 0;
-  Vec3 force_n;  ///< sum of the nodal forces
+  std::size_t supports = 0, loaded_nodes = 0;  ///< of the first step
+  Vec3 force_n;                                ///< of the first step
+  std::vector<FemStep> steps;
+  std::vector<Body> bodies;  ///< the largest first
 };
 
 /// Everything a run reports (modules/report/README.md lists the fields of the JSON form).

@@ -147,6 +147,32 @@ TEST_F(ContactData, EightTiedLabelsMoveAsTheWholeDoes) {
   EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' parts.bdf tied", "deck"), 0) << read("deck.log");
 }
 
+TEST_F(ContactData, AVertebraThatOnlyContactHoldsFindsItsRest) {
+  NEEDS_CCX();
+  // T11's rest on T12: its faces slant, so friction of 0.1 does not hold it under 500 N, and without springs no increment converges.
+  const std::string data = STACKMESH_SHARED_DATA "/torso_totalseg/torso_3mm_61labels.nii.gz";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "NOT TESTED: " << data << " is not there";
+  law(R"("*": {"E_MPa": 500, "poisson": 0.3})", R"({"fixed": [{"set": "low"}], "loaded": [{"set": "high", "force_N": [0, 0, -500]}]})",
+      R"("contact": [{"parts": ["A", "B"], "type": "contact", "friction": 0.1, "stabilise": 0.01}], )");
+  fem("'" + data + "' --label 32,33 --edge-length 6 --order 1 --parts A=33 B=32 --materials law.json --select 'low=of:32&normal:0,0,-1,40' --select "
+      "'high=of:33&normal:0,0,1,40' -o t.inp");
+  solve("t");
+  EXPECT_EQ(read("ccx.log").find("too many cutbacks"), std::string::npos);
+}
+
+TEST_F(ContactData, SpringsThatStabiliseBearAlmostNothing) {
+  NEEDS_CCX();
+  write_mesh("two.vtu", block(2, 2, 4, {1, 1, 1}, [](int, int, int k) { return k < 2 ? 1 : 2; }));
+  const std::string load = R"({"fixed": [{"set": "label_1_cap_low"}], "loaded": [{"set": "label_2_cap_high", "force_N": [0, 0, -40]}]})";
+  law(kOneMaterial, load, R"("contact": [{"parts": ["A", "B"], "type": "contact"}], )");
+  refuses(3, "two.vtu --parts A=1 B=2 --materials law.json", {"1 of 2 bodies are not supported"});
+  law(kOneMaterial, load, R"("contact": [{"parts": ["A", "B"], "type": "contact", "stabilise": 0.0001}], )");
+  fem("two.vtu --parts A=1 B=2 --order 1 --materials law.json -o two.inp --report r.json");
+  EXPECT_EQ(report().at("fem").at("pairs")[0].at("stabilise"), 0.0001);
+  solve("two");
+  expect_answer("reaction two.frd 4 40 0.02");
+}
+
 class ContactInput : public solver::SolverTest {};
 
 TEST_F(ContactInput, BadContactsAreRefused) {

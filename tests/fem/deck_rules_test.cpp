@@ -9,11 +9,12 @@ namespace {
 
 class DeckRules : public solver::SolverTest, public ::testing::WithParamInterface<int> {
  protected:
-  /// A model with all that decks can have: parts that are tied, in contact, and neither; a skin, supports, a displacement, forces.
+  /// A model with all that decks can have: parts that are tied, in contact, and neither; a skin, supports, a displacement, forces, pressure.
   void make() {
     write_mesh("m.vtu", block(4, 2, 2, {1, 1, 1}, [](int i, int, int) { return i + 1; }));
     law(R"("*": {"E_MPa": 1000, "poisson": 0.3, "density_t_mm3": 1e-9})",
-        R"({"fixed": [{"set": "side"}], "moved": [{"set": "end", "mm": [0.1, null, null]}], "loaded": [{"set": "label_2_cap_high", "force_N": [1, 2, 3]}]})",
+        R"({"fixed": [{"set": "side"}], "moved": [{"set": "end", "mm": [0.1, 0, 0]}],
+            "loaded": [{"set": "label_2_cap_high", "force_N": [1, 2, 3]}, {"set": "label_3_cap_high", "pressure_MPa": 0.25}]})",
         R"("skins": {"1": {"E_MPa": 17000, "poisson": 0.3}}, "contact": [{"parts": ["B", "C"], "type": "contact", "friction": 0.2},
            {"parts": ["C", "D"], "type": "none"}], )");
     fem("m.vtu --parts A=1 B=2 C=3 D=4 --skin 1=0.2 --select side=plane:0,0,0,1,0,0 --select end=plane:4,0,0,1,0,0 --materials law.json -o m.feb -o m.bdf --order " +
@@ -50,6 +51,8 @@ TEST_P(DeckRules, FebioDeckKeepsThemAndPlantedMistakesDoNot) {
                                                                                 {"<v>0.3</v>", "<nu>0.3</nu>"},
                                                                                 {"node_set=\"side\"", "node_set=\"back\""},
                                                                                 {"lc=\"1\"", "lc=\"2\""},
+                                                                                {"<surface_load name=\"pressure_1\" surface=\"label_3_cap_high\"", "<surface_load name=\"pressure_1\" surface=\"top\""},
+                                                                                {"<linear>0</linear>", "<follower>1</follower>"},
                                                                                 {"<shell_thickness>", "<shell_thickness>thin"},
                                                                                 {"<primary>contact_A_B<", "<primary>contact_B_B<"},
                                                                                 {"<MeshDomains>", "<MeshData></MeshData>\n<MeshDomains>"}})
@@ -63,6 +66,9 @@ TEST_P(DeckRules, NastranDeckKeepsThemAndPlantedMistakesDoNot) {
   EXPECT_NE(read("m.bdf").find("$ surfaces that face each other, without contact here: contact_B_C and contact_C_B"), std::string::npos);
   const std::string text = read("m.bdf"), tie = text.substr(text.find("RBE2"), 41);  // with its end of line
   ASSERT_EQ(tie.back(), '\n');
+  const std::string load = text.substr(text.find("PLOAD4"), 144);  // with the corners of its face in the last two fields of 16
+  std::string turned = load;
+  turned.replace(112, 32, load.substr(128, 16) + load.substr(112, 16));
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{{tie, tie + tie},
                                                                                 {"RBE2    ", "RBE3    "},
                                                                                 {"SPC = 1", ""},
@@ -71,7 +77,8 @@ TEST_P(DeckRules, NastranDeckKeepsThemAndPlantedMistakesDoNot) {
                                                                                 {"MAT1*                  1           1000.", "MAT1*                  1            1000"},
                                                                                 {"CTETRA         1", "CTETRA         2"},
                                                                                 {"ENDDATA", "ENDDAT"},
-                                                                                {"SPC1           1       1", "SPC1           1       2"}})
+                                                                                {load, turned},
+                                                                                {"SPCD*                  2", "SPCD*                  7"}})
     breaks(script, "m.bdf", from, to);
 }
 

@@ -211,6 +211,35 @@ TEST_F(Materials, BinsHoldEveryElementOnceAndKeepTheMean) {
   }
 }
 
+TEST_F(Materials, LogarithmicBinsKeepEveryElementWithinHalfABin) {
+  // 10 to 20,000 MPa, most of it soft, a few elements hard: what bins of equal count get wrong by more than half.
+  const IntensityVolume image = image_of([](Vec3 p) { return p.x < 6.5 ? 10 + 3 * p.y + 0.7 * p.z * p.z : 10 * std::pow(10, 0.55 * (p.x - 6)) * (1 + 0.1 * p.y) * (1 + 0.05 * p.z); });
+  const auto bins = [&](const std::string& mapping) {
+    SolverModel m = name_sets(block(8, 8, 8, {1, 1, 1}), {}, {});
+    const MaterialPlan p = plan(std::string(kHead) + R"("laws": {"line": {"steps": [{"from": "grey", "to": "E", "unit": "MPa", "factor": 1}]}}, )" + mapping +
+                                R"("labels": {"1": {"law": "line", "poisson": 0.3, "ceiling_MPa": 20000}}})");
+    const MaterialReport r = assign_materials(m, &p, &image, {});
+    double worst = 0;
+    std::set<std::int32_t> seen;
+    for (const ElementMaterial& b : m.sets.materials)
+      for (const std::int32_t t : b.tets) {
+        EXPECT_TRUE(seen.insert(t).second);
+        worst = std::max(worst, std::abs(b.young_mpa / m.sets.modulus_mpa[t] - 1));
+      }
+    EXPECT_EQ(seen.size(), m.mesh.tets.size());
+    EXPECT_NEAR(r.labels[0].bin_error_rel, worst, 1e-12);
+    EXPECT_GT(r.labels[0].young_max_mpa / r.labels[0].young_min_mpa, 10);
+    return std::make_pair(worst, std::log(r.labels[0].young_max_mpa / r.labels[0].young_min_mpa));
+  };
+  const auto [by_default, range] = bins("");
+  EXPECT_LT(by_default, 0.02);
+  EXPECT_LE(by_default, std::tanh(range / 400) * 1.000001);  // half a bin of 200
+  const auto [coarse, same_range] = bins(R"("mapping": {"bins": 20}, )");
+  EXPECT_LE(coarse, std::tanh(same_range / 40) * 1.000001);
+  EXPECT_GT(coarse, by_default);
+  EXPECT_GT(bins(R"("mapping": {"bins": 20, "binning": "equal_count"}, )").first, 0.1);
+}
+
 TEST_F(Materials, RasMeshesMeetTheSameVoxels) {
   const IntensityVolume image = image_of([](Vec3 p) { return 300 + 20 * p.x - 11 * p.y; });
   const MaterialPlan p = plan(std::string(kHead) + kCalibration + kLinear + R"("labels": {"1": {"law": "line", "poisson": 0.3}}})");

@@ -318,32 +318,41 @@ TEST(LoadCase, ForceAndPressureAreInBalance) {
     if (order == 2) mesh = raise_order(mesh).mesh;
     SolverModel m = name_sets(mesh, {}, {});
     LoadCase load;
-    load.loaded.push_back({"label_1_outer", std::nullopt, 2.5});  // pressure on a closed surface sums to nothing
+    load.always.loaded.push_back({"label_1_outer", std::nullopt, 2.5});  // pressure on a closed surface sums to nothing
+    load.always.loaded.push_back({"label_1_outer_1", std::nullopt, 2.5});
     apply_load_case(m, load, "law");
-    Vec3 sum, moment;
-    double most = 0;
-    for (const auto& [v, f] : m.sets.forces_n) {
-      sum = sum + f;
-      moment = moment + cross(m.mesh.points[v], f);
-      most = std::max(most, norm(f));
-    }
-    EXPECT_GT(most, 0.1);
-    EXPECT_LT(norm(sum), 1e-12 * 100);
-    if (order == 1) {
-      EXPECT_LT(norm(moment), 1e-10);
-    }
+    ASSERT_EQ(m.sets.steps.size(), 1u);
+    ASSERT_EQ(m.sets.steps[0].pressures.size(), 2u);
+    EXPECT_TRUE(m.sets.steps[0].forces_n.empty());
+    EXPECT_LT(norm(force_of(m, m.sets.steps[0].pressures[0])), 1e-10);
+    EXPECT_GT(norm(force_of(m, m.sets.steps[0].pressures[1])), 2.5 * 7);
     m = name_sets(mesh, {}, {});
-    load.loaded = {{"label_1_outer", Vec3{1, -2, 3}, std::nullopt}};
+    load.always.loaded = {{"label_1_outer", Vec3{1, -2, 3}, std::nullopt}};
     apply_load_case(m, load, "law");
-    sum = {};
-    for (const auto& [v, f] : m.sets.forces_n) sum = sum + f;
+    Vec3 sum;
+    for (const auto& [v, f] : m.sets.steps[0].forces_n) sum = sum + f;
     EXPECT_LT(norm(sum - Vec3{1, -2, 3}), 1e-12);
+    // A force and a moment on a slanting set, about a point beside it.
+    m = name_sets(mesh, {}, {});
+    load.always.loaded = {{"P", Vec3{1, -2, 3}, std::nullopt, Vec3{5, -4, 20}}};
+    load.points = {{"P", "label_1_outer_1", {7, -3, 2}, false}};
+    apply_load_case(m, load, "law");
+    EXPECT_TRUE(m.sets.points.empty());
+    sum = {};
+    Vec3 moment;
+    for (const auto& [v, f] : m.sets.steps[0].forces_n) {
+      sum = sum + f;
+      moment = moment + cross(m.mesh.points[v] - Vec3{7, -3, 2}, f);
+    }
+    EXPECT_LT(norm(sum - Vec3{1, -2, 3}), 1e-12);
+    EXPECT_LT(norm(moment - Vec3{5, -4, 20}), 1e-11);
+    load.points.clear();
     if (order == 2) {  // even traction on a plane face: nothing at corners, a third at each mid-side node
       SolverModel flat = name_sets(raise_order(block(1, 1, 1, {1, 1, 1})).mesh, {}, {});
-      load.loaded = {{"label_1_cap_high", Vec3{0, 0, 6}, std::nullopt}};
+      load.always.loaded = {{"label_1_cap_high", Vec3{0, 0, 6}, std::nullopt}};
       apply_load_case(flat, load, "law");
       std::multiset<long> parts;
-      for (const auto& [v, f] : flat.sets.forces_n) parts.insert(std::lround(1000 * f.z));
+      for (const auto& [v, f] : flat.sets.steps[0].forces_n) parts.insert(std::lround(1000 * f.z));
       EXPECT_EQ(parts, (std::multiset<long>{0, 0, 0, 0, 1000, 1000, 1000, 1000, 2000}));
     }
   }
@@ -352,9 +361,9 @@ TEST(LoadCase, ForceAndPressureAreInBalance) {
 TEST(LoadCase, RefusesWhatDoesNotFit) {
   SolverModel m = name_sets(two_labels(), kNames, {});
   LoadCase load;
-  load.held.push_back({"left_lung_cap", {0.0, 0.0, 0.0}});
+  load.always.held.push_back({"left_lung_cap", {0.0, 0.0, 0.0}});
   expect_error([&] { apply_load_case(m, load, "law.json"); }, ErrorKind::input, {"'left_lung_cap'", "law.json", "left_lung_cap_low"});
-  load.held = {{"cap_low", {0.0, 0.0, 0.0}}, {"left_lung_cap_low", {std::nullopt, std::nullopt, 0.5}}};
+  load.always.held = {{"cap_low", {0.0, 0.0, 0.0}}, {"left_lung_cap_low", {std::nullopt, std::nullopt, 0.5}}};
   expect_error([&] { apply_load_case(m, load, "law.json"); }, ErrorKind::input, {"two different displacements"});
 }
 

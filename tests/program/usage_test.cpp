@@ -37,6 +37,8 @@ TEST_F(Usage, UnknownOption) {
   wrong({"--frobnicate", "7"}, {"--frobnicate"});
   wrong({"-q"}, {"-q"});
   fails(2, {"info", testdata("border.nii.gz"), "--merge"}, {"--merge"});
+  wrong({"--edge-lenght", "3"}, {"--edge-lenght", "did you mean --edge-length?"});
+  wrong({"--refin=1"}, {"did you mean --refine?"});
 }
 
 TEST_F(Usage, BadNumbers) {
@@ -53,6 +55,7 @@ TEST_F(Usage, BadNumbers) {
       {"--smooth", {"-1", "x"}},
       {"--target-tets", {"0"}},
       {"--order", {"3"}},
+      {"--refine", {"-1", "9", "x"}},
       {"--interpolate", {"x", "-1", "1.5"}},
       {"--edge-length", {"x", "0", "1=2,3", "1,2", "=2", "1="}}};
   for (const auto& [option, values] : bad)

@@ -12,8 +12,20 @@ AXES = ("x", "y", "z")
 LAGRANGE = {"laugon": ("PENALTY", "AUGLAG"), "tolerance": NUMBER, "gaptol": NUMBER, "penalty": NUMBER, "auto_penalty": FLAG, "two_pass": FLAG,
             "knmult": NUMBER, "search_tol": NUMBER, "symmetric_stiffness": FLAG, "search_radius": NUMBER, "minaug": WHOLE, "maxaug": WHOLE}
 BY_TYPE = {
-    "material": {"isotropic elastic": {"density": NUMBER, "E": NUMBER, "v": NUMBER}},
-    "bc": {"zero displacement": {f"{a}_dof": FLAG for a in AXES},
+    "material": {"isotropic elastic": {"density": NUMBER, "E": NUMBER, "v": NUMBER},
+                 "orthotropic elastic": {"density": NUMBER, **{n: NUMBER for n in ("E1", "E2", "E3", "G12", "G23", "G31", "v12", "v23", "v31")}},
+                 "Mooney-Rivlin": {"density": NUMBER, "c1": NUMBER, "c2": NUMBER, "k": NUMBER},
+                 "Holzapfel-Gasser-Ogden": {"density": NUMBER, **{n: NUMBER for n in ("c", "k1", "k2", "kappa", "gamma", "k")}},
+                 "rigid body": {"density": NUMBER, "center_of_mass": NUMBERS}},
+    "surface_load": {"pressure": {"pressure": NUMBER, "linear": FLAG, "symmetric_stiffness": FLAG, "shell_bottom": FLAG}},
+    "body_load": {"body force": {"force": NUMBERS}},
+    "rigid_bc": {"rigid_fixed": {"rb": TEXT, **{f"R{d}_dof": FLAG for d in "xyzuvw"}},
+                 "rigid_displacement": {"rb": TEXT, "dof": AXES, "value": NUMBER, "relative": FLAG},
+                 "rigid_rotation": {"rb": TEXT, "dof": ("Ru", "Rv", "Rw"), "value": NUMBER, "relative": FLAG}},
+    "rigid_load": {"rigid_force": {"rb": TEXT, "dof": ("Rx", "Ry", "Rz"), "value": NUMBER},
+                   "rigid_moment": {"rb": TEXT, "dof": ("Ru", "Rv", "Rw"), "value": NUMBER}},
+    "discrete_material": {"linear spring": {"E": NUMBER}},
+    "bc": {"rigid": {"rb": TEXT}, "zero displacement": {f"{a}_dof": FLAG for a in AXES},
            "prescribed displacement": {"dof": AXES, "value": NUMBER, "relative": FLAG}},
     "nodal_load": {"nodal_force": {"value": NUMBERS}},
     "contact": {"tied-elastic": LAGRANGE,
@@ -23,18 +35,21 @@ BY_TYPE = {
     "solver": {"solid": {"symmetric_stiffness": ("symmetric", "non-symmetric", "structure")}},
 }
 # The attribute that names what a tag refers to, and what that is.
-REFERENCES = {"bc": ("node_set", "NodeSet"), "nodal_load": ("node_set", "NodeSet"), "contact": ("surface_pair", "SurfacePair"),
+REFERENCES = {"surface_load": ("surface", "Surface"), "discrete": ("discrete_set", "DiscreteSet"), "bc": ("node_set", "NodeSet"), "nodal_load": ("node_set", "NodeSet"), "contact": ("surface_pair", "SurfacePair"),
               "NodeData": ("node_set", "NodeSet"), "ElementData": ("elem_set", "Elements"), "SolidDomain": ("name", "Elements"), "ShellDomain": ("name", "Elements")}
 ELEMENTS = {"tet4": 4, "tet10": 10, "tri3": 3, "tri6": 6}
 SECTIONS = {  # section: the children it may have, and the sections that must have been read before it
     "Module": ({"units"}, ()),
     "Control": ({"analysis", "time_steps", "step_size", "solver"}, ("Module",)),
     "Material": ({"material"}, ("Module",)),
-    "Mesh": ({"Nodes", "Elements", "NodeSet", "Surface", "SurfacePair"}, ("Module",)),
+    "Mesh": ({"Nodes", "Elements", "NodeSet", "Surface", "SurfacePair", "DiscreteSet"}, ("Module",)),
     "MeshDomains": ({"SolidDomain", "ShellDomain"}, ("Material", "Mesh")),
     "MeshData": ({"NodeData", "ElementData"}, ("MeshDomains",)),
     "Boundary": ({"bc"}, ("MeshDomains",)),
-    "Loads": ({"nodal_load"}, ("MeshDomains",)),
+    "Rigid": ({"rigid_bc", "rigid_load"}, ("MeshDomains",)),
+    "Loads": ({"nodal_load", "surface_load", "body_load"}, ("MeshDomains",)),
+    "Discrete": ({"discrete_material", "discrete"}, ("MeshDomains",)),
+    "Step": ({"step"}, ("MeshDomains",)),
     "Contact": ({"contact"}, ("MeshDomains",)),
     "LoadData": ({"load_controller"}, ("Module",)),
     "Output": ({"plotfile"}, ("Module",)),
@@ -43,7 +58,10 @@ ATTRIBUTES = {  # needed, possible
     "febio_spec": ({"version"}, set()), "Module": ({"type"}, set()), "material": ({"id", "name", "type"}, set()), "Nodes": (set(), {"name"}),
     "node": ({"id"}, set()), "Elements": ({"type", "name"}, set()), "elem": ({"id"}, set()), "NodeSet": ({"name"}, set()), "Surface": ({"name"}, set()),
     "tri3": ({"id"}, set()), "tri6": ({"id"}, set()), "SurfacePair": ({"name"}, set()), "SolidDomain": ({"name", "mat"}, {"type", "elem_type"}),
-    "ShellDomain": ({"name", "mat"}, {"type", "elem_type"}), "NodeData": ({"name", "node_set"}, {"data_type"}), "ElementData": ({"name", "elem_set"}, {"data_type"}),
+    "ShellDomain": ({"name", "mat"}, {"type", "elem_type"}), "NodeData": ({"name", "node_set"}, {"data_type"}), "ElementData": ({"elem_set"}, {"name", "type", "data_type"}),
+    "surface_load": ({"surface", "type"}, {"name"}), "pressure": (set(), {"lc", "type"}), "body_load": ({"type"}, {"name"}), "force": (set(), {"lc"}),
+    "rigid_bc": ({"type"}, {"name"}), "rigid_load": ({"type"}, {"name"}), "DiscreteSet": ({"name"}, set()), "discrete_material": ({"id", "type"}, {"name"}),
+    "discrete": ({"dmat", "discrete_set"}, set()), "step": ({"id"}, {"name"}),
     "bc": ({"node_set", "type"}, {"name"}), "nodal_load": ({"node_set", "type"}, {"name"}), "contact": ({"surface_pair", "type"}, {"name"}),
     "load_controller": ({"id", "type"}, {"name"}), "solver": ({"type"}, set()), "plotfile": ({"type"}, {"file"}), "var": ({"type"}, set()),
     "value": (set(), {"lc", "type"}), "E": (set(), {"type"}), "density": (set(), {"type"}),
@@ -121,16 +139,25 @@ def check(root):
                 wrong.append(f"<{child.tag}> does not belong in {section.tag}")
     if not read or read[0] != "Module":
         wrong.append("the first section is not Module")
-    for needed in ("Control", "Material", "Mesh", "MeshDomains", "Output"):
+    steps = root.findall("Step/step")
+    for needed in ("Material", "Mesh", "MeshDomains", "Output") + (() if steps else ("Control",)):
         if needed not in read:
             wrong.append(f"no section {needed}")
     if wrong:
         return wrong
     if root.find("Module").get("type") != "solid":
         wrong.append("the module is not solid")
-    control = root.find("Control")
-    if not is_kind(control.findtext("time_steps"), WHOLE) or not float(control.findtext("step_size") or 0) > 0 or control.findtext("analysis") not in ("STATIC", "DYNAMIC"):
-        wrong.append("Control")
+    for step in steps:  # each with a Control of its own, and what acts in it
+        parts = [part.tag for part in step]
+        if parts[:1] != ["Control"] or len(set(parts)) != len(parts) or set(parts) - {"Control", "Boundary", "Rigid", "Loads", "Contact"}:
+            wrong.append(f"step {step.get('id')}: {parts}")
+        for part in step:
+            wrong += [f"<{child.tag}> does not belong in {part.tag}" for child in part if child.tag not in SECTIONS[part.tag][0]]
+    if steps and root.find("Control") is not None:
+        wrong.append("Control beside steps")
+    for control in root.iter("Control"):
+        if not is_kind(control.findtext("time_steps"), WHOLE) or not float(control.findtext("step_size") or 0) > 0 or control.findtext("analysis") not in ("STATIC", "DYNAMIC"):
+            wrong.append("Control")
     mesh = root.find("Mesh")
     if mesh[0].tag != "Nodes":
         wrong.append("Mesh does not begin with Nodes")
@@ -153,6 +180,22 @@ def check(root):
         if attribute and mesh.find(f"{what}[@name='{tag.get(attribute)}']") is None:
             wrong.append(f"<{tag.tag}> names {what} '{tag.get(attribute)}', which is not there")
     materials = {m.get("name") for m in root.find("Material")}
+    rigid = {m.get("name") for m in root.find("Material") if m.get("type") == "rigid body"}
+    wrong += [f"<rb> names '{tag.text}', which is no rigid body" for tag in root.iter("rb") if tag.text not in rigid]
+    springs = {m.get("id") for m in root.iter("discrete_material")}
+    wrong += [f"discrete material {d.get('dmat')} is not there" for d in root.iter("discrete") if d.get("dmat") not in springs]
+    ids = {node.get("id") for node in mesh.find("Nodes")}
+    for element in mesh.iter("delem"):
+        ends = element.text.split(",")
+        if len(ends) != 2 or not set(ends) <= ids:
+            wrong.append(f"<delem> {element.text}")
+    for data in root.iter("ElementData"):
+        if data.get("type") == "mat_axis":
+            block = mesh.find(f"Elements[@name='{data.get('elem_set')}']")
+            if block is None or len(block) != len(data) or any([v.tag for v in e] != ["a", "d"] or not all(len(v.text.split(",")) == 3 for v in e) for e in data):
+                wrong.append("mat_axis")
+        elif data.get("name") is None:
+            wrong.append("ElementData without a name")
     ids = [int(m.get("id")) for m in root.find("Material")]
     if ids != list(range(1, len(ids) + 1)):
         wrong.append("ids of materials")

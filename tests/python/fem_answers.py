@@ -8,6 +8,9 @@ usage: fem_answers.py uniform FRD E NU STRESS AXIS-LENGTH      a bar along z in 
        fem_answers.py contact FRD E NU STRESS INTERFACE K      two bars that touch at z = INTERFACE, pressed together (STRESS < 0)
        fem_answers.py compare LINEAR.frd QUADRATIC.frd FORCE   both in balance; the linear one stiffer, but not by half
        fem_answers.py same FRD OTHER.frd                       nodes at the same place move alike
+       fem_answers.py end FRD LENGTH UX UY UZ TOLERANCE        mean displacement of the nodes at z = LENGTH, within a share of its size
+       fem_answers.py sphere FRD RADIUS U TOLERANCE            mean displacement outwards of the nodes at RADIUS from the origin
+       fem_answers.py frequency DAT F1 TOLERANCE               the first natural frequency, Hz
        fem_answers.py balance FRD FORCE SMALLEST LARGEST       in balance; largest displacement (mm) within the range
 Exits 1 with what differs, 77 without numpy.
 """
@@ -44,6 +47,13 @@ def balance(result, force):
 
 
 def main():
+    if sys.argv[1] == "frequency":
+        meant, tolerance = (float(v) for v in sys.argv[3:])
+        with open(sys.argv[2]) as file:
+            rows = [line.split() for line in file]
+        first_mode = next(row for row in rows if len(row) == 5 and row[0] == "1")
+        close(float(first_mode[3]), meant, tolerance * meant, "first natural frequency")
+        return
     what, first = sys.argv[1], read_frd(sys.argv[2])
     numbers = [float(v) for v in sys.argv[3:] if not v.endswith(".frd")]
     p, u = first.points, first.fields["DISP"][:, :3]
@@ -89,6 +99,18 @@ def main():
         length, force, tolerance = numbers
         held = np.abs(p[:, 2]) < 1e-6
         close(abs(first.fields["FORC"][held, 2].sum()), force, tolerance * force if force else tolerance, "reaction")
+    elif what == "end":
+        length, *meant, tolerance = numbers
+        at = np.abs(p[:, 2] - length) < 1e-6
+        need(at.any(), "no node at the end")
+        close(u[at].mean(axis=0), meant, tolerance * np.linalg.norm(meant), "displacement of the end")
+    elif what == "sphere":
+        radius, meant, tolerance = numbers
+        distance = np.linalg.norm(p, axis=1)
+        at = np.abs(distance - radius) < 0.02 * radius
+        need(at.sum() > 10, "no nodes at the radius")
+        outward = (u[at] * p[at]).sum(axis=1) / distance[at]
+        close(outward.mean(), meant, tolerance * abs(meant), "displacement outwards")
     elif what == "compare":
         second = read_frd(sys.argv[3])
         need(first.tets.shape[1] == 4 and second.tets.shape[1] == 10, "orders")

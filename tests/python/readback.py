@@ -116,7 +116,8 @@ def vtk_grid(reader, path, order=1):
     need(set(types) == {tet_type, tri_type}, f"cell types {set(types)}")
     data = {n: vtk_to_numpy(grid.GetCellData().GetArray(n)) for n in ("label", "label_below", "label_above")}
     tet, tri = types == tet_type, types == tri_type
-    need((data["label"][tri] == 0).all(), "a triangle has a tet label")
+    behind = np.where(data["label_below"][tri] != 0, data["label_below"][tri], data["label_above"][tri])
+    need((data["label"][tri] == behind).all(), "a triangle has not the label of the tet behind it")
     need((data["label_below"][tet] == -1).all() and (data["label_above"][tet] == -1).all(), "a tet has a pair")
     points = vtk_to_numpy(grid.GetPoints().GetData())
     tets, triangles = without_mids(points, corners[starts[tet][:, None] + np.arange((4, 10)[order - 1])],
