@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/dicom_dataset.h"
 #include "image/quiet.h"
 
@@ -16,6 +17,7 @@ namespace stackmesh {
 namespace {
 
 constexpr const char* again = "copy or export the series again";
+constexpr double kMostShrunk = 20000;  // pixels a byte, of an image of one value
 
 /// How the stored bits of a pixel make a number.
 struct PixelFormat {
@@ -125,6 +127,11 @@ std::vector<double> decode_with_gdcm(const std::string& path, std::size_t count)
 /// Compressed pixels, in a file that holds them and what describes them.
 std::vector<double> decode_compressed(DcmFileFormat& file, std::size_t count, const std::string& path) {
   DcmDataset& data = *file.getDataset();
+  std::error_code ignored;
+  const auto there = static_cast<double>(std::filesystem::file_size(path, ignored));
+  if (static_cast<double>(count) > kMostShrunk * there + (1 << 20))
+    fail_input("the image is damaged or truncated: " + std::to_string(count) + " pixels in a file of " + std::to_string(static_cast<std::uint64_t>(there)) + " bytes", path, again);
+  require_memory(10 * count, "the pixels of a slice", path, "crop the series");
   const TemporaryFile alone;
   try {
     DcmFileFormat bare;
@@ -148,16 +155,22 @@ std::vector<double> decode_compressed(DcmFileFormat& file, std::size_t count, co
 
 }  // namespace
 
-std::vector<double> read_dicom_pixels(const std::string& path, int rows, int columns) {
+std::vector<double> DicomPixels::rescaled() {
+  if (is_scaled())
+    for (double& v : stored) v = v * slope + intercept;
+  return std::move(stored);
+}
+
+DicomPixels read_dicom_pixels(const std::string& path, int rows, int columns) {
   const auto file = load_dicom(path);
   DcmDataset& data = *file->getDataset();
   const PixelFormat format = format_of(data, path);
   const std::size_t count = static_cast<std::size_t>(rows) * columns;
-  const double slope = number_of(data, DCM_RescaleSlope, path).value_or(1), intercept = number_of(data, DCM_RescaleIntercept, path).value_or(0);
-  std::vector<double> values = DcmXfer(data.getOriginalXfer()).isEncapsulated() ? decode_compressed(*file, count, path) : decode_plain(data, format, count, path);
-  if (slope != 1 || intercept != 0)
-    for (double& v : values) v = v * slope + intercept;
-  return values;
+  DicomPixels pixels;
+  pixels.slope = number_of(data, DCM_RescaleSlope, path).value_or(1);
+  pixels.intercept = number_of(data, DCM_RescaleIntercept, path).value_or(0);
+  pixels.stored = DcmXfer(data.getOriginalXfer()).isEncapsulated() ? decode_compressed(*file, count, path) : decode_plain(data, format, count, path);
+  return pixels;
 }
 
 }  // namespace stackmesh
