@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "image/dicom_dataset.h"
@@ -75,10 +77,15 @@ std::vector<double> decode_plain(DcmDataset& data, const PixelFormat& format, st
 /// A file that is removed at the end.
 class TemporaryFile {
  public:
-  TemporaryFile() : path_((std::filesystem::temp_directory_path() / "stackmesh_XXXXXX").string()) {
-    const int handle = ::mkstemp(path_.data());
-    if (handle < 0) fail_output("no temporary file can be made", path_, "free some space there, or set TMPDIR");
+  TemporaryFile() {
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    const char* const asked = std::getenv("TMPDIR");
+    path_ = ((error ? std::filesystem::path(asked != nullptr ? asked : "/tmp") : folder) / "stackmesh_XXXXXX").string();
+    const int handle = error ? -1 : ::mkstemp(path_.data());
+    if (handle < 0) fail_output("no temporary file can be made", path_, "free some space there, or set TMPDIR to a folder that you may write to");
     ::close(handle);
+    guard_.emplace(path_);
   }
   ~TemporaryFile() {
     std::error_code ignored;
@@ -90,6 +97,7 @@ class TemporaryFile {
 
  private:
   std::string path_;
+  std::optional<RemovedOnSignals> guard_;
 };
 
 template <class T>

@@ -92,6 +92,9 @@ class MetaImageReader {
         require_spacing(header_.spacing_mm.data(), 3, path_);
         break;
       }
+    const std::string unit = text_.get("distanceunits");
+    if (!unit.empty() && unit != "?" && lower_case(unit) != "mm" && lower_case(unit) != "unknown")
+      header_.warnings.push_back(path_ + ": its unit '" + unit.substr(0, 40) + "' is not used; lengths are taken as mm");
     const std::vector<double> origin = numbers(first_of({"offset", "position", "origin"}), "Offset", path_);
     const std::vector<double> matrix = numbers(first_of({"transformmatrix", "rotation", "orientation"}), "TransformMatrix", path_);
     const std::size_t n = sizes_.size();

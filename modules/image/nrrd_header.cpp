@@ -155,7 +155,7 @@ class NrrdReader {
         const double mm = length(axes_[d]);
         require_spacing(&mm, 1, path_);
         header_.spacing_mm[d] = mm;
-        header_.axes[d] = (1 / mm) * turned(directions_[axes_[d]]);
+        header_.axes[d] = unit(turned(directions_[axes_[d]]));
       }
       if (axes_.size() == 2) header_.axes[2] = cross(header_.axes[0], header_.axes[1]);
     } else {

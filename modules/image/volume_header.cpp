@@ -172,7 +172,7 @@ class NiftiReader {
     const Form form = by_s ? sform() : qform();
     if (by_s && !(cosine_error(form) <= 1e-4))  // a zero column gives a NaN
       fail_input("the voxel grid is sheared or its directions (sform) are zero", path_, "resample the labels to a rectangular grid with nearest neighbour");
-    for (int d = 0; d < 3; ++d) header_.axes[d] = (1 / norm(form[d])) * form[d];
+    for (int d = 0; d < 3; ++d) header_.axes[d] = unit(form[d]);
     header_.origin_mm = unit_mm_ * form[3];
     if (has_s) compare(sform(), stored);
   }
@@ -276,7 +276,7 @@ VolumeHeader read_volume_header(const std::string& path, FileFormat format, bool
                         : format == FileFormat::nrrd ? read_nrrd_volume_header(path, allow_outside)
                                                      : read_metaimage_header(path, allow_outside);
   if (!std::isfinite(norm(header.origin_mm))) damaged("the origin is not finite", path);
-  check_voxel_data(header.data, path);
+  check_voxel_data(header.data, path, header.warnings);
   return header;
 }
 

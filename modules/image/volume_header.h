@@ -39,6 +39,12 @@ VolumeHeader read_gipl_header(const std::string& path);
 VolumeHeader read_nrrd_volume_header(const std::string& path, bool allow_outside);
 VolumeHeader read_metaimage_header(const std::string& path, bool allow_outside);
 
+/// The vector divided by its length: exactly 1 or -1 along an axis.
+inline Vec3 unit(Vec3 v) {
+  const double length = norm(v);
+  return {v.x / length, v.y / length, v.z / length};
+}
+
 /// The sizes along all axes as whole numbers above 0. @throws Error(input)
 std::vector<std::uint64_t> whole_sizes(const std::vector<double>& sizes, double dimensions, const std::string& path);
 

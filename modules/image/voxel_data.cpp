@@ -277,7 +277,7 @@ std::vector<unsigned char> read_start(const std::string& path, unsigned count, b
   return bytes;
 }
 
-void check_voxel_data(const VoxelData& data, const std::string& path) {
+void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<std::string>& warnings) {
   const std::uint64_t share = share_of(data), need = share * bytes_of(data.type);
   for (const DataPart& part : data.parts) {
     const std::uint64_t have = bytes_there(part, path);
@@ -297,6 +297,11 @@ void check_voxel_data(const VoxelData& data, const std::string& path) {
         break;
       default:
         if (have < part.skip + need) truncated(have > part.skip ? have - part.skip : 0, need, where(part, path));
+        if (part.path == path || part.at_end || have == part.skip + need) break;
+        const std::string longer = "holds " + std::to_string(have) + " bytes where its header needs " + std::to_string(part.skip + need);
+        if (data.parts.size() > 1)
+          fail_input("a data file " + longer, where(part, path), "correct the sizes and the type in the header, or give the length of what is in front (HeaderSize, byte skip)");
+        warnings.push_back(where(part, path) + ": " + longer + "; the rest is not read");
     }
   }
 }

@@ -16,6 +16,7 @@ struct InputOptions {
   std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   std::string series;                               ///< DICOM: series instance UID where a folder holds several
+  bool allow_outside = false;                       ///< a detached header may name data files outside of its folder
   bool merge = false;                               ///< selected labels become one
   std::string names;                                ///< label table (fem/label_table.h) that names labels; empty: none
 };
