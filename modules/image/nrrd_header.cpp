@@ -15,6 +15,8 @@ namespace {
 
 [[noreturn]] void damaged(const std::string& what, const std::string& path) { fail_input(what, path, "copy or export the file again"); }
 
+constexpr std::size_t kLongestField = 950;  // the format's own library fails to read longer lines
+
 std::optional<VoxelType> nrrd_type(std::string type) {
   static const std::map<std::string, VoxelType> known = {
       {"signed char", VoxelType::i8}, {"int8", VoxelType::i8}, {"int8_t", VoxelType::i8},
@@ -72,6 +74,9 @@ class NrrdReader {
   NrrdReader(const std::string& path, bool allow_outside) : path_(path), allow_outside_(allow_outside), text_(read_nrrd_header(path)) {}
 
   VolumeHeader run() {
+    for (const auto& [field, value] : text_.fields)  // keys ("=...") and comments may be as long as they like
+      if (field[0] != '=' && field != "content" && value.size() > kLongestField)
+        damaged("the header is damaged: its field '" + field.substr(0, 40) + "' has " + std::to_string(value.size()) + " characters", path_);
     const double dims = text_.fields.count("dimension") ? to_number(text_.get("dimension"), "dimension", path_) : 0;
     if (!(dims >= 1 && dims <= 16)) damaged("the header is damaged: no 'dimension'", path_);
     sizes_ = whole_sizes(numbers(text_.get("sizes"), "sizes", path_), dims, path_);
@@ -148,7 +153,7 @@ class NrrdReader {
   void place() {
     const std::optional<std::array<double, 3>> known = flips_of(text_.get("space"));
     const std::array<double, 3> flip = known.value_or(std::array<double, 3>{1, 1, 1});
-    if (!known) header_.warnings.push_back(path_ + ": its space '" + text_.get("space") + "' is not known; left, posterior, superior is taken");
+    if (!known) fail_input("its space '" + text_.get("space").substr(0, 40) + "' is not known", path_, "write a space such as left-posterior-superior, or none");
     const auto turned = [&](const std::vector<double>& v) { return Vec3{v.size() > 0 ? flip[0] * v[0] : 0, v.size() > 1 ? flip[1] * v[1] : 0, v.size() > 2 ? flip[2] * v[2] : 0}; };
     if (!directions_.empty()) {
       for (std::size_t d = 0; d < axes_.size(); ++d) {

@@ -77,7 +77,7 @@ TextHeader read_nrrd_header(const std::string& path) {
     }
     if (line[0] == '#') continue;
     const std::size_t colon = line.find(':');
-    if (colon == std::string::npos) continue;
+    if (colon == std::string::npos || colon == 0) continue;
     if (line.compare(colon, 2, ":=") == 0) {
       header.fields["=" + line.substr(0, colon)] = trim(line.substr(colon + 2));
       continue;

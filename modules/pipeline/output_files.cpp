@@ -14,7 +14,8 @@ bool is_one_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (a.empty() || b.empty()) return false;
   if (fs::equivalent(a, b, error) && !error) return true;  // through links, too
-  const fs::path p = fs::weakly_canonical(behind_links(a), error), q = fs::weakly_canonical(behind_links(b), error);
+  const auto whole = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(behind_links(path), error), error); };
+  const fs::path p = whole(a), q = whole(b);
   return !error && p == q;
 }
 
