@@ -170,6 +170,8 @@ void take_grey(const unsigned char* pixels, std::uint64_t count, int samples, in
 
 SliceImage read_png(const std::vector<unsigned char>& bytes, const std::string& path) {
   static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  if (bytes.size() > 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
+    fail_input("this is a JPEG file, whose compression changes label numbers", path, "export the labels as PNG or TIFF");
   if (bytes.size() < 8 || std::memcmp(bytes.data(), signature, 8) != 0)
     fail_input("this is no PNG file, or it is damaged", path, "copy or export the file again");
   std::vector<unsigned char> stream;

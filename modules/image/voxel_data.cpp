@@ -277,6 +277,22 @@ std::vector<unsigned char> read_start(const std::string& path, unsigned count, b
   return bytes;
 }
 
+namespace {
+
+constexpr std::uint64_t kLarge = std::uint64_t{256} << 20;
+
+/// A small stream that claims much is decoded once without keeping anything, before memory for all of it is taken.
+void require_inflated(const DataPart& part, const std::string& path, std::uint64_t need) {
+  Inflater stream(part, path);
+  std::vector<unsigned char> piece(1 << 18);
+  std::uint64_t made = 0;
+  for (std::uint64_t got = 1; got > 0 && made < need; made += got = stream.read(piece.data(), piece.size())) {}
+  if (made < need)
+    damaged("cannot read the voxels: it is truncated: " + std::to_string(made) + " bytes where its header needs " + std::to_string(need), where(part, path));
+}
+
+}  // namespace
+
 void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<std::string>& warnings) {
   const std::uint64_t share = share_of(data), need = share * bytes_of(data.type);
   for (const DataPart& part : data.parts) {
@@ -287,6 +303,7 @@ void check_voxel_data(const VoxelData& data, const std::string& path, std::vecto
           damaged("the file is truncated or its header is wrong: " + std::to_string(have) + " compressed bytes cannot hold the " +
                       std::to_string(part.skip + need) + " its header needs",
                   where(part, path));
+        if (need > kLarge && need / 20 > have) require_inflated(part, path, part.skip + need);
         break;
       case VoxelEncoding::text:
         if (have < 2 * share - 1)

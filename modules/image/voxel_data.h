@@ -34,7 +34,7 @@ struct VoxelData {
 };
 
 /// Compares what is needed with the bytes that the files have, before any memory is taken. A compressed stream is looked at by
-/// its size alone: deflate cannot shrink data more than about 1032 times. A data file that is longer than what is read of it is a warning; of
+/// its size (deflate cannot shrink data more than about 1032 times), and decoded without being kept where it claims hundreds of megabytes. A data file that is longer than what is read of it is a warning; of
 /// several files it is an error, as what is too much may be a header in front.
 /// @throws Error(input) naming the file that is missing, no regular file, or too short
 void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<std::string>& warnings);

@@ -167,6 +167,26 @@ TEST_F(StoredNumbers, GreyPngOfFewBitsIsNotStretched) {
   }
 }
 
+TEST_F(StoredNumbers, AJpegUnderTheNameOfAPngIsNamed) { expect_unreadable(write("a.png", Bytes("\xff\xd8\xff\xe0 and so on")), {"JPEG"}); }
+
+TEST_F(StoredNumbers, ASmallStreamThatClaimsMuchTakesNoMemory) {
+  Nifti n;
+  n.dim = {3, 1000, 1000, 1000, 1, 1, 1, 1};
+  Bytes noise(1100000, '\0');  // a megabyte that a gigabyte could be in, by its size
+  std::uint32_t state = 1;
+  for (char& c : noise) c = static_cast<char>((state = state * 1664525u + 1013904223u) >> 24);
+  const std::string file = write("n.nii.gz", gzip(n.header() + noise));
+  const auto peak_mb = [] {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.compare(0, 6, "VmHWM:") == 0) return std::stol(line.substr(6)) / 1024;
+    return 0L;
+  };
+  const long before = peak_mb();
+  expect_unreadable(file, {"truncated", "1100352 bytes"});
+  EXPECT_LT(peak_mb() - before, 200);
+}
+
 TEST_F(StoredNumbers, PngFiltersAreUndone) {
   // rows of 3 pixels by each of the five filters, decoded by hand
   const Bytes rows("\0\1\2\3" "\1\1\1\1" "\2\1\1\1" "\3\1\1\1" "\4\1\1\1", 20);
