@@ -21,3 +21,6 @@ stackmesh_module(image
   USES base model
   PRIVATE ${ITK_LIBRARIES} ZLIB::ZLIB TIFF::TIFF DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
 target_include_directories(stackmesh_image SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # Debian's ITK headers know no compiler but GCC
+  set_source_files_properties(image/dicom_pixels.cpp PROPERTIES COMPILE_OPTIONS "-U__clang__;-fgnuc-version=9.1.0")
+endif()
