@@ -256,6 +256,12 @@ class Exchange {
   AnswerHeader header_;
 };
 
+/// A signal that someone sends; the others are faults of the process itself.
+bool is_from_outside(int signal) {
+  const auto faults = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP};
+  return std::find(faults.begin(), faults.end(), signal) == faults.end();
+}
+
 std::string how_it_ended(std::optional<int> status) {
   if (!status) return "ended its answer too early";
   if (WIFSIGNALED(*status)) {
@@ -305,7 +311,7 @@ Reply run(const Program& program, const Request& request, Clock::time_point dead
       const auto grace = std::min(deadline, Clock::now() + std::chrono::seconds(5));
       reply.kind = exchange.greeted() ? Reply::Kind::died : Reply::Kind::not_a_worker;
       const std::optional<int> status = child.wait_until(grace);
-      reply.killed = status && WIFSIGNALED(*status);
+      reply.killed = status && WIFSIGNALED(*status) && is_from_outside(WTERMSIG(*status));
       reply.text = "the worker " + name + " " + how_it_ended(status);
       break;
     }
