@@ -8,7 +8,7 @@ program=(
   g++ cmake ninja-build ccache
   libopencv-dev # the small -dev packages of its parts lack OpenCVConfig.cmake
   libcgal-dev libtet1.5-dev libopenmesh-dev
-  libinsighttoolkit5-dev libdcmtk-dev
+  libinsighttoolkit5-dev libdcmtk-dev libtiff-dev
   libtbb-dev libcli11-dev nlohmann-json3-dev libpugixml-dev
   libjs-three libjs-chart.js # inside the HTML report
 )

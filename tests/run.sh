@@ -2,8 +2,14 @@
 # Installs what the build and the tests need, builds, runs every test.
 # The last line is 'N passed, N failed, N skipped'; the exit code is 0 only when tests ran and none failed.
 #   tests/run.sh [CTEST ARGUMENTS...]      for example: tests/run.sh -R Contour
+#   tests/run.sh --fuzz SECONDS [READER...]      fuzzes the readers in place of it (clang); findings are in build-fuzz/found
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+if [[ ${1:-} == --fuzz ]]; then
+  shift
+  exec bash tests/fuzz/run.sh "$@"
+fi
 
 step() { # step NAME COMMAND...: runs it, says how long it took
   local name=$1 start=$SECONDS

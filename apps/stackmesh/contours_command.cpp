@@ -3,9 +3,11 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "commands.h"
 #include "meshio/write_sections.h"
 #include "options.h"
+#include "pipeline/output_files.h"
 
 namespace stackmesh::app {
 namespace {
@@ -30,6 +32,7 @@ std::string written_name(const std::string& output, const Stack& stack) {
 
 void run(const ContoursArguments& a) {
   if (!is_section_format(a.output)) fail_usage("unknown ending of an output", a.output, "choose .json, .svg or .cnt");
+  check_output_files({a.output}, a.input.paths);
   const auto progress = a.terminal.make_progress();
   const SectionOptions options = a.contours.options();
   Input input = read_input(a.input.options());
@@ -47,7 +50,7 @@ void run(const ContoursArguments& a) {
     vertices += s.points.size();
     edges += s.edges.size();
   }
-  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges, written_name(a.output, stack).c_str());
+  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges, printable(written_name(a.output, stack)).c_str());
 }
 
 }  // namespace

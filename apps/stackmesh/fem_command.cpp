@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "commands.h"
 #include "fem/material_law.h"
 #include "options.h"
@@ -84,11 +85,11 @@ std::string contact_text(const SurfacePair& p) {
 void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
   const FemReport& f = *r.fem;
   std::printf("mesh      %zu nodes, %zu tetrahedra of %d nodes, %zu shells\n", f.nodes, f.elements, f.order == 2 ? 10 : 4, f.shells);
-  for (const FemSet& s : f.sets) std::printf("set       %-32s %7zu nodes %7zu faces  %s\n", s.name.c_str(), s.nodes, s.faces, s.note.c_str());
+  for (const FemSet& s : f.sets) std::printf("set       %-32s %7zu nodes %7zu faces  %s\n", printable(s.name).c_str(), s.nodes, s.faces, printable(s.note).c_str());
   for (const SurfacePair& p : f.pairs)
-    std::printf("pair      %-32s %s\n", (p.parts[0] + ", " + p.parts[1]).c_str(), contact_text(p).c_str());
+    std::printf("pair      %-32s %s\n", printable(p.parts[0] + ", " + p.parts[1]).c_str(), contact_text(p).c_str());
   for (const MaterialRow& m : f.materials) {
-    std::printf("material  %-32s ", m.name.c_str());
+    std::printf("material  %-32s ", printable(m.name).c_str());
     if (f.placeholder_materials) std::printf("none given\n");
     else if (m.law.empty()) std::printf("E %.5g MPa\n", m.young_mean_mpa);
     else
@@ -110,7 +111,7 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
       std::printf("%zu loaded nodes, force (%.5g, %.5g, %.5g) N%s%s\n", p.loaded_nodes, p.force_n.x, p.force_n.y, p.force_n.z,
                   norm(p.gravity_mm_s2) > 0 ? ", gravity" : "", p.large_displacements ? ", large displacements" : "");
   }
-  for (const std::string& o : outputs) std::printf("written   %s\n", o.c_str());
+  for (const std::string& o : outputs) std::printf("written   %s\n", printable(o).c_str());
 }
 
 }  // namespace

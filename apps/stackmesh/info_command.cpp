@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "commands.h"
 #include "fair/true_grid.h"
 #include "options.h"
@@ -52,7 +53,7 @@ Json describe(const Input& input, const std::array<double, 3>& made_mm) {
 }
 
 void print(const Input& input, const std::array<double, 3>& made_mm) {
-  std::printf("%s (%s)\n", input.path.c_str(), input.kind.c_str());
+  std::printf("%s (%s)\n", printable(input.path).c_str(), input.kind.c_str());
   if (input.volume) {
     const LabelVolume& v = *input.volume;
     std::printf("dimensions %d x %d x %d voxels, spacing %g x %g x %g mm, stacked along %c\n", v.size[0], v.size[1], v.size[2],
@@ -66,11 +67,11 @@ void print(const Input& input, const std::array<double, 3>& made_mm) {
     std::printf("%8s %12s %14s  %s\n", "label", "voxels", "volume mm3", "name");
     for (std::size_t k = 1; k < v.labels.size(); ++k)
       std::printf("%8d %12zu %14.1f  %s\n", v.labels[k].number, counts[k], static_cast<double>(counts[k]) * v.voxel_volume_mm3(),
-                  v.labels[k].name.c_str());
+                  printable(v.labels[k].name).c_str());
   } else {
     const Stack& s = *input.sections;
     std::printf("sections   %zu, from z = %g to %g mm\n", s.sections.size(), s.sections.front().z_mm, s.sections.back().z_mm);
-    for (std::size_t k = 1; k < s.labels.size(); ++k) std::printf("%8d  %s\n", s.labels[k].number, s.labels[k].name.c_str());
+    for (std::size_t k = 1; k < s.labels.size(); ++k) std::printf("%8d  %s\n", s.labels[k].number, printable(s.labels[k].name).c_str());
   }
 }
 

@@ -1,9 +1,16 @@
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <exception>
+#include <filesystem>
 #include <new>
+#include <system_error>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "commands.h"
 #include "slicer_module.h"
@@ -11,9 +18,36 @@
 
 namespace {
 
-int report(const char* text, stackmesh::ErrorKind kind) {
-  std::fprintf(stderr, "stackmesh: error: %s\n", text);
+int report(const std::string& text, stackmesh::ErrorKind kind) {
+  std::fprintf(stderr, "stackmesh: error: %s\n", stackmesh::printable(text).c_str());
   return static_cast<int>(kind);
+}
+
+int report_memory() {
+  return report("the memory that may be taken, " + stackmesh::memory_text(stackmesh::memory_limit()) + ", is not enough, this machine or --max-memory; mesh fewer labels or a smaller volume at once",
+                stackmesh::ErrorKind::no_result);
+}
+
+/// What was printed must have arrived.
+int finish(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  const int why = errno;
+  return code != 0 ? code : report("cannot write: " + std::string(std::strerror(why != 0 ? why : EIO)) + ", standard output; free some space or redirect it elsewhere", stackmesh::ErrorKind::output);
+}
+
+/// The last resort: an exception where none may be, such as want of memory in a destructor.
+[[noreturn]] void on_terminate() {
+  int code = 70;
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    code = report_memory();
+  } catch (const std::exception& e) {
+    report(std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input", stackmesh::ErrorKind::internal);
+  } catch (...) {
+  }
+  stackmesh::remove_unfinished_files();
+  std::_Exit(code);
 }
 
 /// CLI11 would say only that a command is missing.
@@ -69,7 +103,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {  // --help, --version
     return program.exit(e);
   } catch (const CLI::ParseError& e) {
-    return report((std::string(e.what()) + meant(program, e.what()) + ", command line; see stackmesh --help").c_str(), stackmesh::ErrorKind::usage);
+    return report(std::string(e.what()) + meant(program, e.what()) + ", command line; see stackmesh --help", stackmesh::ErrorKind::usage);
   }
   return 0;
 }
@@ -79,14 +113,22 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // The volume mesher runs in a worker process of this same program.
   if (argc > 1 && std::strcmp(argv[1], "--tetgen-worker") == 0) return stackmesh::tetgen_worker_main();
+  std::set_terminate(on_terminate);
+  stackmesh::end_on_signals();
+  stackmesh::set_memory_limit(0);
   try {
-    return run(argc, argv);
+    return finish(run(argc, argv));
   } catch (const stackmesh::Error& e) {
+    std::fflush(stdout);
     return report(e.what(), e.kind());
   } catch (const std::bad_alloc&) {
-    return report("out of memory, this machine; mesh fewer labels or a smaller volume at once", stackmesh::ErrorKind::no_result);
+    return report_memory();
+  } catch (const std::filesystem::filesystem_error& e) {
+    return report("cannot be read: " + e.code().message() + ", " + e.path1().string() + "; check its folder and your rights", stackmesh::ErrorKind::input);
+  } catch (const std::system_error& e) {  // threads and processes that the system does not give
+    return report("the system does not give what is needed: " + std::string(e.what()) + ", this machine; allow more processes (ulimit -u) or give fewer --threads",
+                  stackmesh::ErrorKind::no_result);
   } catch (const std::exception& e) {
-    return report((std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input").c_str(),
-                  stackmesh::ErrorKind::internal);
+    return report(std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input", stackmesh::ErrorKind::internal);
   }
 }

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "commands.h"
 #include "options.h"
 #include "slicer_module.h"
@@ -183,7 +184,7 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
   if (r.volume)
     std::printf("volume   %zu tetrahedra, dihedral angles %.2f to %.2f degrees, closure %s\n", r.volume->tets, r.volume->dihedral_min_deg,
                 r.volume->dihedral_max_deg, r.closure.c_str());
-  for (const std::string& o : outputs) std::printf("written  %s\n", o.c_str());
+  for (const std::string& o : outputs) std::printf("written  %s\n", printable(o).c_str());
 }
 
 void add(CLI::App& program, const char* name, const char* description, Target target) {

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "slicer_module.h"
 
 namespace stackmesh::app {
@@ -41,6 +43,8 @@ void InputArguments::add_to(CLI::App& command, bool selection) {
   command.add_option("INPUT", paths, "label volume, DICOM (RTSTRUCT, SEG, series), folder or quoted glob of slices or masks, .cnt file(s) or LABEL=FILE.cnt")->required();
   command.add_option("--spacing", spacing, "X,Y,Z mm of a PNG/TIFF stack");
   command.add_option("--series", series, "DICOM: series instance UID where a folder holds several");
+  command.add_flag("--allow-outside", allow_outside, "a detached header (.nhdr, .mhd) may name data files outside of its own folder");
+  add_memory_option(command);
   if (!selection) return;
   command.add_option("--label", labels, "labels to use by number or name: 1,4,7-9,femur_left (default: all)");
   command.add_flag("--merge", merge, "selected labels become one, numbered as the smallest");
@@ -52,6 +56,7 @@ InputOptions InputArguments::options() const {
   o.labels = labels;
   o.series = series;
   o.merge = merge;
+  o.allow_outside = allow_outside;
   if (!spacing.empty()) {
     const std::vector<std::string> parts = split(spacing, ',');
     if (parts.size() != 3) fail_usage("--spacing needs three numbers", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
@@ -175,8 +180,14 @@ void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::s
   }
 }
 
+void add_memory_option(CLI::App& command) {
+  command.add_option_function<std::string>(
+      "--max-memory", [](const std::string& text) { set_memory_limit(parse_memory(text, "--max-memory")); },
+      "most memory that this process, and each that it starts, may take: 4GB, 512MB (default: what the machine or its control group has)");
+}
+
 void print_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& w : warnings) std::fprintf(stderr, "stackmesh: warning: %s\n", w.c_str());
+  for (const std::string& w : warnings) std::fprintf(stderr, "stackmesh: warning: %s\n", printable(w).c_str());
 }
 
 }  // namespace stackmesh::app

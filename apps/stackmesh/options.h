@@ -17,7 +17,7 @@ namespace stackmesh::app {
 struct InputArguments {
   std::vector<std::string> paths;
   std::string spacing, labels, series;
-  bool merge = false;
+  bool merge = false, allow_outside = false;
   void add_to(CLI::App& command, bool selection);
   InputOptions options() const;  ///< @throws Error(usage)
 };
@@ -58,6 +58,9 @@ std::optional<int> parse_interpolate(const std::string& text);
 /// "auto", "flat", "round", or per label "5=flat,9=round", or per label and end "1:high=flat,low=round" (an end that is not named is
 /// automatic). @throws Error(usage)
 void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, LabelEndCaps>>& per_label);
+
+/// --max-memory, which takes effect when it is read.
+void add_memory_option(CLI::App& command);
 
 /// A warning as a line on stderr.
 void print_warnings(const std::vector<std::string>& warnings);

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "commands.h"
 #include "options.h"
 #include "pipeline/validate_run.h"
@@ -12,6 +13,7 @@ namespace {
 
 struct ValidateArguments {
   std::vector<std::string> meshes, reports, against;
+  bool allow_outside = false;
   std::string spacing, labels, axis = "auto", space = "auto", array, limits, defects;
   bool as_stored = false, merge = false, write_defects = false;
   int threads = 0;
@@ -23,7 +25,7 @@ ValidateRunOptions to_options(const ValidateArguments& a) {
   o.meshes = a.meshes;
   if (!a.against.empty()) {
     InputArguments input;
-    input.paths = a.against, input.spacing = a.spacing, input.labels = a.labels, input.merge = a.merge;
+    input.paths = a.against, input.spacing = a.spacing, input.labels = a.labels, input.merge = a.merge, input.allow_outside = a.allow_outside;
     o.against = input.options();
   } else if (!a.labels.empty() || a.merge) {
     fail_usage("--label and --merge choose labels of --against", "command line", "name the labels with --against");
@@ -81,6 +83,8 @@ void add_validate_command(CLI::App& program) {
   command->add_option("--label-array", a->array, "cell array of the mesh that holds the labels");
   command->add_option("--spacing", a->spacing, "voxel size of PNG/TIFF slices, X,Y,Z in mm");
   command->add_flag("--as-stored", a->as_stored, "take labels that are stored finer than they were made as they are stored");
+  command->add_flag("--allow-outside", a->allow_outside, "a detached header (.nhdr, .mhd) may name data files outside of its own folder");
+  add_memory_option(*command);
   command->add_option("--axis", a->axis, "stacking axis: auto, x, y or z")->capture_default_str();
   command->add_flag("--write-defects", a->write_defects, "NAME.defects.vtp with the offending triangles, beside the report");
   command->add_option("--defects", a->defects, "the same, into this folder");
@@ -93,9 +97,9 @@ void add_validate_command(CLI::App& program) {
     if (!a->terminal.quiet) {
       for (std::size_t i = 0; i < reports.size(); ++i) {
         print_warnings(reports[i].warnings);
-        std::printf("%s%s", i ? "\n" : "", text_summary(reports[i]).c_str());
+        std::printf("%s%s", i ? "\n" : "", printable_lines(text_summary(reports[i])).c_str());
       }
-      if (reports.size() > 1) std::printf("\n%s", text_table(reports).c_str());
+      if (reports.size() > 1) std::printf("\n%s", printable_lines(text_table(reports)).c_str());
     }
     std::fflush(stdout);
     fail_by_verdict(reports);

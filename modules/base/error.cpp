@@ -1,14 +1,14 @@
 #include "base/error.h"
 
+#include "base/text.h"
+
 namespace stackmesh {
 namespace {
 std::string join(const std::string& what, const std::string& where, const std::string& mend) {
   std::string text = what;
   if (!where.empty()) text += ", " + where;
   if (!mend.empty()) text += "; " + mend;
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';  // an error is one line, of text
-  return text;
+  return printable(text);  // an error is one line, of text
 }
 }  // namespace
 

@@ -12,6 +12,36 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+std::string printable(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const auto after = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+    if (c == 0xc2 && after >= 0x80 && after < 0xa0) {
+      out += ' ';
+      ++i;
+    } else if (c == 0xe2 && after == 0x80 && i + 2 < text.size() && (static_cast<unsigned char>(text[i + 2]) & 0xfe) == 0xa8) {  // line and paragraph separators
+      out += ' ';
+      i += 2;
+    } else {
+      const bool lone = c >= 0x80 && c < 0xa0 && (i == 0 || static_cast<unsigned char>(text[i - 1]) < 0x80);  // a control character outside of UTF-8
+      out += c < ' ' || c == 127 || lone ? ' ' : text[i];
+    }
+  }
+  return out;
+}
+
+std::string printable_lines(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += printable(text.substr(at, end - at));
+    if (end < text.size()) out += '\n';
+    at = end + 1;
+  }
+  return out;
+}
+
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }

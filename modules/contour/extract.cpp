@@ -49,10 +49,17 @@ Section make_section(const SliceArcs& traced, const LabelVolume& volume, double 
 
 int stacking_axis(const LabelVolume& volume, StackAxis axis) {
   if (axis != StackAxis::automatic) return static_cast<int>(axis) - 1;
-  int best = 2;
-  for (int a : {1, 0})
-    if (volume.spacing_mm[a] > 1.01 * volume.spacing_mm[best]) best = a;
-  return best;
+  const auto coarsest = [&](auto usable) {
+    int best = -1;
+    for (int a : {2, 1, 0})
+      if (usable(a) && (best < 0 || volume.spacing_mm[a] > 1.01 * volume.spacing_mm[best])) best = a;
+    return best;
+  };
+  const int best = coarsest([](int) { return true; });
+  // A slab of one slice is a stack along another axis; a picture, or a slice of cubes, is refused as what it is.
+  const bool is_slab = volume.size[best] == 1 && volume.kind != "slices" && *std::min_element(volume.spacing_mm.begin(), volume.spacing_mm.end()) * 1.01 < volume.spacing_mm[best];
+  const int other = is_slab ? coarsest([&](int a) { return volume.size[a] > 1; }) : -1;
+  return other >= 0 ? other : best;
 }
 
 ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress, const FairedLabels* faired) {

@@ -119,9 +119,9 @@ void InsideVoxels::continue_outward() {
     means.reserve(layer.size());
     for (const auto& [i, j, k] : layer) {
       double sum = 0, weights = 0;
-      visit_neighbours(i, j, k, [&](int x, int y, int z) {
+      visit_neighbours(i, j, k, [&, ci = i, cj = j, ck = k](int x, int y, int z) {
         if (state_[at(x, y, z)] == 0) return;
-        const Vec3 d = {(x - i) * image_.spacing_mm[0], (y - j) * image_.spacing_mm[1], (z - k) * image_.spacing_mm[2]};
+        const Vec3 d = {(x - ci) * image_.spacing_mm[0], (y - cj) * image_.spacing_mm[1], (z - ck) * image_.spacing_mm[2]};
         sum += value_[at(x, y, z)] / norm(d);
         weights += 1 / norm(d);
       });

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
+#include "base/json_text.h"
 #include "fem/law_json.h"
 
 namespace stackmesh {
@@ -32,11 +32,10 @@ class LawReader : LawJson {
   explicit LawReader(const std::string& path) : LawJson(path) { plan_.path = path; }
 
   MaterialPlan read() {
-    std::ifstream file(plan_.path);
-    if (!file) fail_input("the material law cannot be read", plan_.path, "check the path of --materials");
+    const std::string text = read_json_text(plan_.path, "the material law", "check the path of --materials");
     Json j;
     try {
-      j = Json::parse(file);
+      j = Json::parse(text);
     } catch (const Json::parse_error& e) {
       fail_input("the material law is no JSON (byte " + std::to_string(e.byte) + ")", plan_.path, "mend the file; docs/fem.md has the schema");
     }
@@ -273,6 +272,12 @@ std::vector<std::string> known_laws() {
   return names;
 }
 
-MaterialPlan read_law(const std::string& path) { return LawReader(path).read(); }
+MaterialPlan read_law(const std::string& path) {
+  try {
+    return LawReader(path).read();
+  } catch (const Json::exception&) {  // an entry of another type than it should have
+    fail_input("the material law holds an entry of the wrong type", path, "docs/fem.md has the schema");
+  }
+}
 
 }  // namespace stackmesh

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/text.h"
 #include "fem/label_table.h"
 
@@ -54,11 +54,10 @@ Vec3 unit(Vec3 v, const std::string& text) {
 
 /// Control points of a Slicer markups file, in the frame of the mesh.
 std::vector<Vec3> read_markups(const std::string& path, bool ras) {
-  std::ifstream file(path);
-  if (!file) fail_input("the markups file cannot be read", path, "check the path");
+  const std::string text = read_json_text(path, "the markups file", "check the path");
   std::vector<Vec3> points;
   try {
-    const nlohmann::json j = nlohmann::json::parse(file);
+    const nlohmann::json j = nlohmann::json::parse(text);
     for (const auto& markup : j.at("markups")) {
       const std::string system = markup.value("coordinateSystem", std::string("LPS"));
       if (system != "LPS" && system != "RAS" && system != "0" && system != "1")

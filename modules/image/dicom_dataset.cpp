@@ -4,6 +4,8 @@
 #include <dcmtk/dcmdata/dcxfer.h>
 #include <dcmtk/oflog/oflog.h>
 
+#include <sys/stat.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -11,6 +13,7 @@
 
 #include "base/error.h"
 #include "image/dicom_file.h"
+#include "image/dicom_nesting.h"
 
 namespace stackmesh {
 namespace {
@@ -21,6 +24,8 @@ constexpr const char* again = "copy or export the file again";
 void silence() {
   static const bool done = [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    // Values of more than 64 kB do not fit explicit VRs such as DS and are stored as UN (PS3.5, 6.2.2): read by the dictionary.
+    dcmEnableUnknownVRConversion.set(OFTrue);
     return true;
   }();
   (void)done;
@@ -53,6 +58,7 @@ std::unique_ptr<DcmFileFormat> load_dicom(const std::string& path) {
   silence();
   std::ifstream probe(path, std::ios::binary);
   if (!probe) fail_input("cannot open the file", path, "check that you may read it");
+  if (dicom_nesting(path) > kDeepest) fail_input("the DICOM file's sequences are nested more than " + std::to_string(kDeepest) + " deep", path, again);
   auto file = std::make_unique<DcmFileFormat>();
   const OFCondition status = file->loadFile(path.c_str());
   if (status.bad()) fail_input("the DICOM file is damaged or truncated", path, again);
@@ -63,6 +69,7 @@ std::unique_ptr<DcmFileFormat> load_dicom(const std::string& path) {
 
 std::unique_ptr<DcmFileFormat> load_dicom_header(const std::string& path) {
   silence();
+  if (dicom_nesting(path) > kDeepest) return nullptr;
   auto file = std::make_unique<DcmFileFormat>();
   const OFCondition status =
       file->loadFileUntilTag(path.c_str(), EXS_Unknown, EGL_noChange, 4096, ERM_autoDetect, DCM_PixelData);
@@ -168,6 +175,8 @@ void refuse_dicom(const std::string& path) {
 }
 
 DicomKind dicom_kind(const std::string& path) {
+  struct stat info;
+  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return DicomKind::none;
   char start[132] = {};
   std::ifstream stream(path, std::ios::binary);
   stream.read(start, sizeof start);

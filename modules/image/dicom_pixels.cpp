@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/dicom_dataset.h"
 #include "image/quiet.h"
 
@@ -16,6 +19,7 @@ namespace stackmesh {
 namespace {
 
 constexpr const char* again = "copy or export the series again";
+constexpr double kMostShrunk = 20000;  // pixels a byte, of an image of one value
 
 /// How the stored bits of a pixel make a number.
 struct PixelFormat {
@@ -73,10 +77,15 @@ std::vector<double> decode_plain(DcmDataset& data, const PixelFormat& format, st
 /// A file that is removed at the end.
 class TemporaryFile {
  public:
-  TemporaryFile() : path_((std::filesystem::temp_directory_path() / "stackmesh_XXXXXX").string()) {
-    const int handle = ::mkstemp(path_.data());
-    if (handle < 0) fail_output("no temporary file can be made", path_, "free some space there, or set TMPDIR");
+  TemporaryFile() {
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    const char* const asked = std::getenv("TMPDIR");
+    path_ = ((error ? std::filesystem::path(asked != nullptr ? asked : "/tmp") : folder) / "stackmesh_XXXXXX").string();
+    const int handle = error ? -1 : ::mkstemp(path_.data());
+    if (handle < 0) fail_output("no temporary file can be made", path_, "free some space there, or set TMPDIR to a folder that you may write to");
     ::close(handle);
+    guard_.emplace(path_);
   }
   ~TemporaryFile() {
     std::error_code ignored;
@@ -88,6 +97,7 @@ class TemporaryFile {
 
  private:
   std::string path_;
+  std::optional<RemovedOnSignals> guard_;
 };
 
 template <class T>
@@ -125,6 +135,11 @@ std::vector<double> decode_with_gdcm(const std::string& path, std::size_t count)
 /// Compressed pixels, in a file that holds them and what describes them.
 std::vector<double> decode_compressed(DcmFileFormat& file, std::size_t count, const std::string& path) {
   DcmDataset& data = *file.getDataset();
+  std::error_code ignored;
+  const auto there = static_cast<double>(std::filesystem::file_size(path, ignored));
+  if (static_cast<double>(count) > kMostShrunk * there + (1 << 20))
+    fail_input("the image is damaged or truncated: " + std::to_string(count) + " pixels in a file of " + std::to_string(static_cast<std::uint64_t>(there)) + " bytes", path, again);
+  require_memory(10 * count, "the pixels of a slice", path, "crop the series");
   const TemporaryFile alone;
   try {
     DcmFileFormat bare;
@@ -148,16 +163,22 @@ std::vector<double> decode_compressed(DcmFileFormat& file, std::size_t count, co
 
 }  // namespace
 
-std::vector<double> read_dicom_pixels(const std::string& path, int rows, int columns) {
+std::vector<double> DicomPixels::rescaled() {
+  if (is_scaled())
+    for (double& v : stored) v = v * slope + intercept;
+  return std::move(stored);
+}
+
+DicomPixels read_dicom_pixels(const std::string& path, int rows, int columns) {
   const auto file = load_dicom(path);
   DcmDataset& data = *file->getDataset();
   const PixelFormat format = format_of(data, path);
   const std::size_t count = static_cast<std::size_t>(rows) * columns;
-  const double slope = number_of(data, DCM_RescaleSlope, path).value_or(1), intercept = number_of(data, DCM_RescaleIntercept, path).value_or(0);
-  std::vector<double> values = DcmXfer(data.getOriginalXfer()).isEncapsulated() ? decode_compressed(*file, count, path) : decode_plain(data, format, count, path);
-  if (slope != 1 || intercept != 0)
-    for (double& v : values) v = v * slope + intercept;
-  return values;
+  DicomPixels pixels;
+  pixels.slope = number_of(data, DCM_RescaleSlope, path).value_or(1);
+  pixels.intercept = number_of(data, DCM_RescaleIntercept, path).value_or(0);
+  pixels.stored = DcmXfer(data.getOriginalXfer()).isEncapsulated() ? decode_compressed(*file, count, path) : decode_plain(data, format, count, path);
+  return pixels;
 }
 
 }  // namespace stackmesh

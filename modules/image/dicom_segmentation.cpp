@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <map>
 #include <set>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/dicom_dataset.h"
 #include "image/dicom_grid.h"
 #include "image/segments.h"
@@ -157,8 +159,9 @@ class SegmentationReader {
     const double gap = slice_gap(heights);
     const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
     const double count = std::round((*high - *low) / gap) + 1;
-    if (count * static_cast<double>(rows_) * static_cast<double>(columns_) > 2e10)
-      fail_input("the segmentation spans an absurd number of voxels", path_, again);
+    if (count > 64.0 * static_cast<double>(frames_.size()) + 1000)
+      fail_input("the segmentation's " + std::to_string(frames_.size()) + " frames span an absurd number of slices", path_, again);
+    require_memory(static_cast<std::uint64_t>(2 * count) * static_cast<std::uint64_t>(rows_ * columns_), "the labels of " + std::to_string(static_cast<int>(count)) + " slices", path_, "crop the segmentation");
     volume_.size = {static_cast<int>(columns_), static_cast<int>(rows_), static_cast<int>(count)};
     volume_.spacing_mm = {grid_.pixel_x_mm, grid_.pixel_y_mm, count > 1 ? (*high - *low) / (count - 1) : gap};
     volume_.axes = {grid_.x, grid_.y, grid_.normal};
@@ -186,14 +189,26 @@ class SegmentationReader {
       if (thickness_ > 0) return thickness_;
       fail_input("the segmentation has one slice only and gives no thickness for it", path_, again);
     }
-    // Where frames are left out, the true gap may be smaller than any between two frames.
-    if (declared_gap_ > 0.01 && declared_gap_ < 0.99 * smallest) {
-      const bool fits = std::all_of(heights.begin(), heights.end(), [&](double h) {
-        const double k = (h - heights[0]) / declared_gap_;
-        return std::abs(k - std::round(k)) < 0.05;
-      });
-      if (fits) return declared_gap_;
-    }
+    return choose_gap(heights, smallest);
+  }
+
+  static bool fits(const std::vector<double>& heights, double gap) {
+    return std::all_of(heights.begin(), heights.end(), [&](double h) {
+      const double k = (h - heights[0]) / gap;
+      return std::abs(k - std::round(k)) < 0.05;
+    });
+  }
+
+  /// Where frames are left out, the true gap may be smaller than any between two frames: then they lie at uneven multiples of the
+  /// declared one. Frames that lie evenly give their own gap, whatever is declared; two heights alone go by the thickness.
+  double choose_gap(const std::vector<double>& heights, double smallest) {
+    const auto is = [](double a, double b) { return std::abs(a - b) <= 0.01 * b; };
+    if (declared_gap_ <= 0.01 || is(declared_gap_, smallest)) return smallest;
+    const bool declared_fits = declared_gap_ < smallest && fits(heights, declared_gap_), two = heights.back() - heights.front() <= smallest + 0.01;
+    if (declared_fits && (!fits(heights, smallest) || (two && is(thickness_, declared_gap_)))) return declared_gap_;
+    char text[160];
+    std::snprintf(text, sizeof text, ": it declares slices %.6g mm apart, but its frames are %.6g mm apart; the frames' own gap is taken", declared_gap_, smallest);
+    volume_.warnings.push_back(path_ + text);
     return smallest;
   }
 

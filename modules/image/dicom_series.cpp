@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/dicom_dataset.h"
 #include "image/dicom_file.h"
 #include "image/dicom_grid.h"
@@ -81,7 +82,17 @@ class SeriesReader {
   }
 
   /// The rescaled values of one slice.
-  std::vector<double> read(std::size_t slice) const { return read_dicom_pixels(slices_[slice].file, rows_, columns_); }
+  std::vector<double> read(std::size_t slice) const { return read_dicom_pixels(slices_[slice].file, rows_, columns_).rescaled(); }
+  /// The same as labels: where a slope has made them less than whole, they are rounded.
+  std::vector<double> read_labels(std::size_t slice) {
+    DicomPixels pixels = read_dicom_pixels(slices_[slice].file, rows_, columns_);
+    if (!pixels.is_scaled()) return std::move(pixels.stored);
+    LabelRounding rounding(pixels.slope, pixels.intercept);
+    for (double& v : pixels.stored) v = rounding.round(v);
+    rounded_ = std::max(rounded_, rounding.worst());
+    return std::move(pixels.stored);
+  }
+  void warn_of_rounding(std::vector<std::string>& warnings) const { warn_of_rounded_labels(rounded_, path_, warnings); }
 
  private:
   void find_slices() {
@@ -126,7 +137,8 @@ class SeriesReader {
     const std::optional<Vec3> position = vector_of(data, DCM_ImagePositionPatient, file);
     if (orientation.size() != 6 || pixel.size() != 2 || !position)
       fail_input("a slice has no place: its position, orientation or pixel spacing is missing", file, again);
-    const auto rows = static_cast<int>(number_of(data, DCM_Rows, file).value_or(0)), columns = static_cast<int>(number_of(data, DCM_Columns, file).value_or(0));
+    const auto length = [&](const DcmTagKey& tag) { return static_cast<int>(std::clamp(number_of(data, tag, file).value_or(0), 0.0, 65535.0)); };
+    const int rows = length(DCM_Rows), columns = length(DCM_Columns);
     if (rows < 1 || columns < 1) fail_input("a slice has no rows or columns", file, again);
     if (slices_.empty()) {
       rows_ = rows;
@@ -150,6 +162,9 @@ class SeriesReader {
       if (!kept.empty() && s.height - kept.back().height <= 1e-3) twice.push_back(s.file);
       else kept.push_back(std::move(s));
     }
+    if (kept.size() == 1 && !twice.empty())
+      fail_input("all " + std::to_string(slices_.size()) + " slices of the series have the same position, at height " + list_heights({kept[0].height}) + " mm", path_,
+                 "export the series with its true positions (ImagePositionPatient)");
     if (2 * twice.size() >= kept.size() && !twice.empty() && kept.size() > 1)
       fail_input("the series holds several images at each position (times, echoes or copies), such as " + list_files(twice), path_,
                  "put one image of each position into a folder");
@@ -188,7 +203,7 @@ class SeriesReader {
                           list_heights({*std::max_element(gaps.begin(), gaps.end())}) + " mm; the slices are taken to an even grid by their true positions");
     const double wanted = multiples ? usual : smallest;
     const double count = std::round(span / wanted) + 1;
-    if (count > 100000) fail_input("the gaps of the slices differ too much for an even grid", path_, "resample the series to even slices");
+    if (count > 64.0 * static_cast<double>(n) + 256) fail_input("the gaps of the slices differ too much for an even grid", path_, "resample the series to even slices");
     count_ = static_cast<int>(count);
     gap_mm_ = span / (count - 1);
   }
@@ -199,7 +214,7 @@ class SeriesReader {
   std::vector<std::string> warnings_;
   DicomGrid grid_;
   int rows_ = 0, columns_ = 0, count_ = 0;
-  double gap_mm_ = 1, alone_mm_ = 0;
+  double gap_mm_ = 1, alone_mm_ = 0, rounded_ = 0;
   bool even_ = true;
 };
 
@@ -241,18 +256,21 @@ LabelVolume read_series_labels(const std::string& path, const std::string& serie
   LabelVolume volume;
   take_grid(series, volume);
   const std::size_t pixels = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
+  series.read(0);  // its pixels are there before memory for all of them is taken
+  require_memory((2 * static_cast<std::size_t>(volume.size[2]) + 8) * pixels, "the labels of " + std::to_string(volume.size[2]) + " slices", path, "crop the series");
   volume.voxels.resize(pixels * volume.size[2]);
   Palette palette;
   for (int k = 0; k < volume.size[2]; ++k) {
     const auto [low, t] = series.place_of(k);
     const std::size_t nearest = t <= 0.5 ? low : low + 1;
-    const std::vector<double> values = series.read(nearest);
+    const std::vector<double> values = series.read_labels(nearest);
     palette.convert(values.data(), volume.voxels.data() + pixels * k, pixels, [&](std::size_t i) {
       return std::pair<std::string, std::string>(series.file_of(nearest), "pixel (" + std::to_string(i % volume.size[0]) + ", " +
                                                                               std::to_string(i / volume.size[0]) + ")");
     });
   }
-  palette.finish(volume);
+  palette.finish(volume, path);
+  series.warn_of_rounding(volume.warnings);
   return volume;
 }
 
@@ -261,6 +279,8 @@ IntensityVolume read_series_image(const std::string& path, const std::string& se
   IntensityVolume image;
   take_grid(series, image);
   const std::size_t pixels = static_cast<std::size_t>(image.size[0]) * image.size[1];
+  series.read(0);
+  require_memory((sizeof(float) * static_cast<std::size_t>(image.size[2]) + 24) * pixels, "the intensities of " + std::to_string(image.size[2]) + " slices", path, "crop the series");
   image.values.resize(pixels * image.size[2]);
   std::map<std::size_t, std::vector<double>> read;  // the slices that the next ones need
   for (int k = 0; k < image.size[2]; ++k) {

@@ -10,7 +10,8 @@ namespace stackmesh {
 /// What a folder (or one file) of DICOM holds; empty where it holds none.
 struct DicomContent {
   std::vector<std::string> structure_sets, segmentations, images, others;
-  bool any() const { return !structure_sets.empty() || !segmentations.empty() || !images.empty() || !others.empty(); }
+  std::size_t size() const { return structure_sets.size() + segmentations.size() + images.size() + others.size(); }
+  bool any() const { return size() > 0; }
 };
 
 /// Looks into a folder's files, or at one file. Folders are not searched deeper.

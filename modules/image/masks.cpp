@@ -29,7 +29,7 @@ std::string quoted(const LabelInfo& label) {
 
 }  // namespace
 
-LabelVolume read_masks(const std::vector<std::string>& files) {
+LabelVolume read_masks(const std::vector<std::string>& files, bool allow_outside) {
   if (files.size() > 1000)
     fail_input(std::to_string(files.size()) + " masks are too many", files[0], "give at most 1000 masks");
   LabelVolume all;
@@ -39,7 +39,7 @@ LabelVolume read_masks(const std::vector<std::string>& files) {
   std::vector<std::string> warnings;
   for (std::size_t k = 1; k <= files.size(); ++k) {
     const std::string& file = files[k - 1];
-    LabelVolume mask = read_volume_file(file, format_of(file));
+    LabelVolume mask = read_volume_file(file, format_of(file), "", allow_outside);
     labels.push_back({static_cast<Label>(k), stem_of(file)});
     for (std::size_t j = 1; j < k; ++j)
       if (labels[j].name == labels[k].name)

@@ -1,8 +1,8 @@
-# Labels, contours and intensities from files: NIfTI, NRRD, MetaImage, GIPL (ITK), DICOM (DCMTK, GDCM through ITK), PNG/TIFF
-# slices (OpenCV), masks, .cnt.
-find_package(ITK 5 REQUIRED COMPONENTS
-  ITKCommon ITKIOImageBase ITKNIFTI ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGIPL ITKIOGDCM)
+# Labels, contours and intensities from files: NIfTI, NRRD, MetaImage, GIPL, PNG (zlib), TIFF (libtiff), DICOM (DCMTK; GDCM
+# through ITK for compressed pixels), masks, .cnt.
+find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOGDCM)
 find_package(ZLIB REQUIRED)
+find_package(TIFF REQUIRED)
 find_package(DCMTK CONFIG REQUIRED)
 # Targets that a package imports are known in this folder only; what links to us from elsewhere needs them too.
 get_property(image_imported DIRECTORY PROPERTY IMPORTED_TARGETS)
@@ -13,10 +13,14 @@ foreach(target IN LISTS image_imported)
   endif()
 endforeach()
 stackmesh_module(image
-  SOURCES read_labels.cpp read_image.cpp read_contours.cpp volume_file.cpp volume_header.cpp deflate_check.cpp slices.cpp png_check.cpp
-          masks.cpp palette.cpp file_names.cpp dicom_dataset.cpp dicom_grid.cpp
+  SOURCES read_labels.cpp read_image.cpp read_contours.cpp volume_file.cpp volume_header.cpp nrrd_header.cpp metaimage_header.cpp data_files.cpp voxel_data.cpp
+          slices.cpp png_file.cpp tiff_file.cpp
+          masks.cpp palette.cpp file_names.cpp dicom_dataset.cpp dicom_nesting.cpp dicom_grid.cpp
           dicom_segmentation.cpp dicom_series.cpp dicom_pixels.cpp read_structure_set.cpp segments.cpp slicer_segments.cpp text_header.cpp
   HEADERS read_labels.h read_image.h read_contours.h read_structure_set.h dicom_file.h dicom_series.h
   USES base model
-  PRIVATE ${ITK_LIBRARIES} opencv_core opencv_imgcodecs ZLIB::ZLIB DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
+  PRIVATE ${ITK_LIBRARIES} ZLIB::ZLIB TIFF::TIFF DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
 target_include_directories(stackmesh_image SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # Debian's ITK headers know no compiler but GCC
+  set_source_files_properties(image/dicom_pixels.cpp PROPERTIES COMPILE_OPTIONS "-U__clang__;-fgnuc-version=9.1.0")
+endif()

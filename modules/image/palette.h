@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -56,8 +57,10 @@ class Palette {
     }
   }
 
-  /// Sorts the palette, renumbers the voxels and fills volume.labels.
-  void finish(LabelVolume& volume) const;
+  /// Sorts the palette, renumbers the voxels and fills volume.labels. More than a thousand labels must look like parcels: then
+  /// neighbouring voxels are mostly of one label, which those of an intensity image are not.
+  /// @throws Error(input) naming `path` where they do not
+  void finish(LabelVolume& volume, const std::string& path) const;
 
  private:
   static constexpr std::int32_t unseen = -1;
@@ -70,5 +73,26 @@ class Palette {
   std::unordered_map<std::int64_t, std::int32_t> index_ = {{0, 0}};
   std::vector<std::int64_t> values_ = {0};  // in order of appearance
 };
+
+/// Labels that are stored with a slope: what it makes is near whole numbers, but not whole.
+class LabelRounding {
+ public:
+  LabelRounding(double slope, double intercept) : slope_(slope), intercept_(intercept), near_(std::min(0.05, std::max(1e-3, 0.51 * std::abs(slope)))) {}
+  /// The value that a stored one stands for, whole where it is near a whole number.
+  double round(double stored) {
+    const double value = slope_ * stored + intercept_, whole = std::nearbyint(value), off = std::abs(value - whole);
+    if (!(off <= near_)) return value;
+    worst_ = std::max(worst_, off);
+    return whole + 0.0;  // -0 becomes 0
+  }
+  /// The largest distance from a whole number that was rounded away.
+  double worst() const { return worst_; }
+
+ private:
+  double slope_, intercept_, near_, worst_ = 0;
+};
+
+/// Says that values were rounded, if any was.
+void warn_of_rounded_labels(double worst, const std::string& path, std::vector<std::string>& warnings);
 
 }  // namespace stackmesh

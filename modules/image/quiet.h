@@ -5,7 +5,7 @@
 
 namespace stackmesh {
 
-/// ITK and OpenCV write to std::cerr, which the library must not; while one of these lives they do not. It
+/// GDCM (through ITK) writes to std::cerr, which the library must not; while one of these lives it does not. It
 /// also lets one reader run at a time, since the stream and some of those readers are shared.
 class Quiet {
  public:

@@ -18,7 +18,7 @@ IntensityVolume read_image(const std::string& path, const ReadImageOptions& opti
   if (format == FileFormat::unknown && !dicom_content(path).images.empty()) return read_series_image(path, options.series);
   if (std::filesystem::is_directory(path, error) || format == FileFormat::unknown || format == FileFormat::png || format == FileFormat::tiff)
     fail_input("this is no image file that intensities are read from", path, images);
-  IntensityVolume image = read_intensity_file(path, format);
+  IntensityVolume image = read_intensity_file(path, format, options.allow_outside);
   for (std::size_t i = 0; i < image.values.size(); ++i)
     if (!std::isfinite(image.values[i])) {
       const std::size_t x = i % image.size[0], y = i / image.size[0] % image.size[1], z = i / image.size[0] / image.size[1];

@@ -8,6 +8,7 @@ namespace stackmesh {
 /// What the user can say about an image that does not say it itself.
 struct ReadImageOptions {
   std::string series;  ///< series instance UID where a DICOM folder holds several; default: it must hold one
+  bool allow_outside = false;  ///< a detached header may name data files outside of its folder
 };
 
 /// Reads the intensities of one three-dimensional image (.nii .nii.gz .nrrd .nhdr .mha .mhd .gipl .gipl.gz) or of a DICOM series

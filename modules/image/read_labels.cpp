@@ -67,21 +67,21 @@ LabelVolume read_files(const std::vector<std::string>& files, const std::string&
     fail_input("both slices and mask volumes are there",
                file_name_of(slices[0]) + " and " + file_name_of(masks[0]) + " in " + path,
                "put them into separate folders, or give a quoted glob such as '" + path + "/*.png'");
-  const auto by_name = [](const std::string& a, const std::string& b) {
-    const std::string m = file_name_of(a), n = file_name_of(b);
-    return m != n ? natural_less(m, n) : a < b;
-  };
+  std::vector<std::string> names;
+  for (const std::string& file : slices) names.push_back(stem_of(file));
+  for (const std::string& file : masks) names.push_back(stem_of(file));
+  const NameOrder order(names);
   const auto by_stem = [&](const std::string& a, const std::string& b) {
     const std::string m = stem_of(a), n = stem_of(b);
-    return m != n ? natural_less(m, n) : by_name(a, b);
+    return m != n ? order.less(m, n) : a < b;
   };
-  std::sort(slices.begin(), slices.end(), by_name);
+  std::sort(slices.begin(), slices.end(), by_stem);
   std::sort(masks.begin(), masks.end(), by_stem);
   if (!slices.empty()) return read_slices(slices, options.spacing_mm);
   if (options.spacing_mm)
     fail_usage("--spacing is for PNG/TIFF slices", path,
                "leave it out: the masks carry their own voxel size");
-  return read_masks(masks);
+  return read_masks(masks, options.allow_outside);
 }
 
 /// The labels of a DICOM file or folder.
@@ -100,21 +100,29 @@ LabelVolume read_any(const std::string& path, const ReadOptions& options) {
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) {
     const std::vector<std::string> files = list_folder(path);
-    const bool known = std::any_of(files.begin(), files.end(), [](const std::string& f) { return format_of(f) != FileFormat::unknown; });
-    const DicomContent dicom = known ? DicomContent() : dicom_content(path);
-    return dicom.any() ? read_dicom(dicom, path, options) : read_files(files, path, options);
+    const DicomContent dicom = dicom_content(path);
+    std::vector<std::string> known;
+    for (const std::string& f : files)
+      if (format_of(f) != FileFormat::unknown && file_name_of(f)[0] != '.') known.push_back(f);
+    if (!dicom.any() || known.size() > dicom.size()) return read_files(files, path, options);
+    LabelVolume volume = read_dicom(dicom, path, options);
+    if (!known.empty())
+      volume.warnings.push_back(path + ": a folder of DICOM in which " + file_name_of(*std::min_element(known.begin(), known.end())) +
+                                (known.size() > 1 ? " and " + std::to_string(known.size() - 1) + " more files" : "") + " of another kind are left out");
+    return volume;
   }
   if (!fs::exists(status)) {
     if (path.find_first_of("*?[") != std::string::npos) return read_files(expand_glob(path), path, options);
     fail_input("the input does not exist", path.empty() ? "''" : path, "check the path");
   }
+  if (!fs::is_regular_file(status)) fail_input("the input is no regular file", path, "give a file or a folder");
   const FileFormat format = format_of(path);
   if (format == FileFormat::unknown && dicom_kind(path) != DicomKind::none) return read_dicom(dicom_content(path), path, options);
   if (format == FileFormat::unknown) fail_input("the ending is of no known format", path, inputs);
   if (is_slice(format)) return read_slices({path}, options.spacing_mm);
   if (options.spacing_mm)
     fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: the file carries its own voxel size");
-  return read_volume_file(path, format, options.labels);
+  return read_volume_file(path, format, options.labels, options.allow_outside);
 }
 
 }  // namespace

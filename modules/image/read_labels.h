@@ -13,6 +13,7 @@ struct ReadOptions {
   /// carries its own, so giving it there is an error.
   std::optional<std::array<double, 3>> spacing_mm;
   std::string labels;  ///< "Heart,Lt_Lung": priority where segments overlap; others may be left out. Default: all, smaller ones first
+  bool allow_outside = false;  ///< a detached header may name data files outside of its folder
   std::string series;  ///< series instance UID where a DICOM folder holds several; default: it must hold one
 };
 

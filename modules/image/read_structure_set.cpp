@@ -76,7 +76,7 @@ class StructureSetReader {
       ContourFile s;
       s.path = path_;
       s.name = text_of(*item, DCM_ROIName);
-      if (number) by_number_.emplace(static_cast<long>(*number), set_.structures.size());
+      if (number && std::abs(*number) < 1e15) by_number_.emplace(static_cast<long>(*number), set_.structures.size());
       const bool usable = number && *number >= 1 && *number < 2147483648.0 && taken.insert(static_cast<Label>(*number)).second;
       s.label = usable ? static_cast<Label>(*number) : 0;
       if (!usable) unnumbered.push_back(set_.structures.size());
@@ -98,7 +98,7 @@ class StructureSetReader {
     std::set<std::size_t> filled;
     for (DcmItem* roi : items_of(data_, DCM_ROIContourSequence)) {
       const std::optional<double> number = number_of(*roi, DCM_ReferencedROINumber, path_);
-      const auto found = number ? by_number_.find(static_cast<long>(*number)) : by_number_.end();
+      const auto found = number && std::abs(*number) < 1e15 ? by_number_.find(static_cast<long>(*number)) : by_number_.end();
       if (found == by_number_.end()) {
         set_.warnings.push_back(path_ + ": contours of a structure that the file does not name are left out");
         continue;

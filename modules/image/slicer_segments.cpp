@@ -34,16 +34,28 @@ bool reference_extent(const TextHeader& header, std::array<double, 6>& extent, c
   return false;
 }
 
+/// The numbers of "Segment7_...", which need not be without holes.
+std::set<int> segment_numbers(const TextHeader& header) {
+  std::set<int> found;
+  for (const auto& entry : header.fields) {
+    if (entry.first.compare(0, 8, "=Segment") != 0) continue;
+    const std::size_t end = entry.first.find_first_not_of("0123456789", 8);
+    if (end == 8 || end == std::string::npos || end > 16 || entry.first[end] != '_') continue;
+    found.insert(std::stoi(entry.first.substr(8, end - 8)));
+  }
+  return found;
+}
+
 }  // namespace
 
 SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::array<double, 3>& size, int layers, const std::string& path) {
   SlicerSegmentation found;
   std::set<Label> values;
   bool own_numbers = true;
-  for (int i = 0; i < 100000; ++i) {
+  for (const int i : segment_numbers(header)) {
     const std::string key = "Segment" + std::to_string(i) + "_";
     const auto get = [&](const char* field) { return header.get("=" + key + field); };
-    if (get("ID").empty() && get("Name").empty() && get("LabelValue").empty()) break;
+    if (get("ID").empty() && get("Name").empty() && get("LabelValue").empty()) continue;
     SlicerSegment s;
     s.label.name = get("Name").empty() ? get("ID") : get("Name");
     // Before Slicer 4.11 each segment was a layer of its own, with the value 1.

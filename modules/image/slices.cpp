@@ -4,32 +4,16 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <opencv2/core.hpp>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/file_names.h"
 #include "image/palette.h"
-#include "image/png_check.h"
 #include "image/quiet.h"
+#include "image/slice_image.h"
 
 namespace stackmesh {
 namespace {
-
-constexpr const char* again = "copy or export the file again";
-
-/// Silences OpenCV's log, whose level is global.
-class SilentLog {
- public:
-  SilentLog() : level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~SilentLog() { cv::utils::logging::setLogLevel(level_); }
-  SilentLog(const SilentLog&) = delete;
-  SilentLog& operator=(const SilentLog&) = delete;
-
- private:
-  cv::utils::logging::LogLevel level_;
-};
 
 std::vector<unsigned char> read_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -37,90 +21,52 @@ std::vector<unsigned char> read_bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// One channel of a grey image; colour is refused unless it is grey in truth.
-cv::Mat grey(const cv::Mat& image, const std::string& path) {
-  if (image.channels() == 1) return image;
-  const int bytes = static_cast<int>(image.elemSize1()), pixel = static_cast<int>(image.elemSize());
-  const int colours = std::min(image.channels(), 3);  // a fourth channel is opacity
-  cv::Mat out(image.rows, image.cols, CV_MAKETYPE(image.depth(), 1));
-  for (int y = 0; y < image.rows; ++y) {
-    const unsigned char* p = image.ptr(y);
-    unsigned char* q = out.ptr(y);
-    for (int x = 0; x < image.cols; ++x, p += pixel, q += bytes) {
-      for (int c = 1; c < colours; ++c)
-        if (std::memcmp(p, p + c * bytes, bytes) != 0)
-          fail_input("the slice is a colour image",
-                     path + ", pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")",
-                     "save it as 8- or 16-bit greyscale with the label as grey value");
-      std::memcpy(q, p, bytes);
-    }
-  }
-  return out;
-}
-
-/// The page at `index`, or an empty image when the file has no such page.
-cv::Mat read_tiff_page(const std::string& path, int index) {
-  std::vector<cv::Mat> pages;
-  cv::imreadmulti(path, pages, index, 1, cv::IMREAD_UNCHANGED);
-  return pages.empty() ? cv::Mat() : pages[0];
-}
-
 class Stacker {
  public:
   explicit Stacker(std::size_t files) : files_(files) {}
 
-  void add(const cv::Mat& coloured, const std::string& path, int page) {
-    const std::string name = page < 0 ? path : path + ", page " + std::to_string(page + 1);
-    const cv::Mat image = grey(coloured, name);
+  void add(const SliceImage& image, const std::string& path, int page) {
+    const std::string name = page < 0 ? path : path + ", page " + std::to_string(page);
+    const std::size_t pixels = image.width * image.height;
     if (volume_.size[2] == 0) {
-      volume_.size = {image.cols, image.rows, 0};
+      volume_.size = {static_cast<int>(image.width), static_cast<int>(image.height), 0};
       first_ = name;
-      if (page < 0) volume_.voxels.reserve(image.total() * files_);
-    } else if (image.cols != volume_.size[0] || image.rows != volume_.size[1]) {
-      fail_input("the slices differ in size: " + std::to_string(image.cols) + " x " +
-                     std::to_string(image.rows) + " against " + std::to_string(volume_.size[0]) + " x " +
+      if (page < 0) {
+        require_memory(2 * pixels * files_, "the labels of " + std::to_string(files_) + " slices of " + std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels", path, "crop the slices");
+        volume_.voxels.reserve(pixels * files_);
+      }
+    } else if (static_cast<int>(image.width) != volume_.size[0] || static_cast<int>(image.height) != volume_.size[1]) {
+      fail_input("the slices differ in size: " + std::to_string(image.width) + " x " +
+                     std::to_string(image.height) + " against " + std::to_string(volume_.size[0]) + " x " +
                      std::to_string(volume_.size[1]),
                  name + " against " + first_, "give slices of one size");
     }
     const std::size_t begin = volume_.voxels.size();
-    volume_.voxels.resize(begin + image.total());
-    for (int y = 0; y < image.rows; ++y) {
-      std::uint16_t* out = volume_.voxels.data() + begin + static_cast<std::size_t>(y) * image.cols;
-      const Palette::Where where = [&](std::size_t x) {
-        return std::pair<std::string, std::string>(
-            name, "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")");
-      };
-      switch (image.depth()) {
-        case CV_8U:
-          palette_.convert(image.ptr<unsigned char>(y), out, image.cols, where);
-          break;
-        case CV_8S:
-          palette_.convert(image.ptr<signed char>(y), out, image.cols, where);
-          break;
-        case CV_16U:
-          palette_.convert(image.ptr<unsigned short>(y), out, image.cols, where);
-          break;
-        case CV_16S:
-          palette_.convert(image.ptr<short>(y), out, image.cols, where);
-          break;
-        case CV_32S:
-          palette_.convert(image.ptr<int>(y), out, image.cols, where);
-          break;
-        case CV_32F:
-          palette_.convert(image.ptr<float>(y), out, image.cols, where);
-          break;
-        case CV_64F:
-          palette_.convert(image.ptr<double>(y), out, image.cols, where);
-          break;
-        default:
-          fail_input("its pixel type is not read", name, "save it as 8- or 16-bit greyscale");
-      }
+    volume_.voxels.resize(begin + pixels);
+    std::uint16_t* const out = volume_.voxels.data() + begin;
+    const Palette::Where where = [&](std::size_t i) {
+      return std::pair<std::string, std::string>(name, "pixel (" + std::to_string(i % image.width) + ", " + std::to_string(i / image.width) + ")");
+    };
+    const unsigned char* in = image.values.data();
+    switch (image.type) {
+      case VoxelType::u8: palette_.convert(in, out, pixels, where); break;
+      case VoxelType::i8: palette_.convert(reinterpret_cast<const std::int8_t*>(in), out, pixels, where); break;
+      case VoxelType::u16: palette_.convert(reinterpret_cast<const std::uint16_t*>(in), out, pixels, where); break;
+      case VoxelType::i16: palette_.convert(reinterpret_cast<const std::int16_t*>(in), out, pixels, where); break;
+      case VoxelType::u32: palette_.convert(reinterpret_cast<const std::uint32_t*>(in), out, pixels, where); break;
+      case VoxelType::i32: palette_.convert(reinterpret_cast<const std::int32_t*>(in), out, pixels, where); break;
+      case VoxelType::u64: palette_.convert(reinterpret_cast<const std::uint64_t*>(in), out, pixels, where); break;
+      case VoxelType::i64: palette_.convert(reinterpret_cast<const std::int64_t*>(in), out, pixels, where); break;
+      case VoxelType::f32: palette_.convert(reinterpret_cast<const float*>(in), out, pixels, where); break;
+      case VoxelType::f64: palette_.convert(reinterpret_cast<const double*>(in), out, pixels, where); break;
     }
     ++volume_.size[2];
   }
 
-  LabelVolume finish() {
-    palette_.finish(volume_);
+  std::vector<std::string>& warnings() { return volume_.warnings; }
+
+  LabelVolume finish(const std::string& path) {
+    palette_.finish(volume_, path);
     return std::move(volume_);
   }
 
@@ -132,46 +78,25 @@ class Stacker {
 };
 
 void add_file(Stacker& stack, const std::string& path) {
+  size_of_file(path, path);
   if (format_of(path) == FileFormat::png) {
-    const cv::Mat image = cv::imdecode(checked_png(read_bytes(path), path), cv::IMREAD_UNCHANGED);
-    if (image.empty()) fail_input("the PNG file is damaged", path, again);
-    stack.add(image, path, -1);
+    stack.add(read_png(read_bytes(path), path), path, -1);
     return;
   }
-  const std::vector<unsigned char> start = read_bytes(path);
-  const bool tiff = start.size() >= 8 &&
-                    (std::memcmp(start.data(), "II", 2) == 0 || std::memcmp(start.data(), "MM", 2) == 0);
-  const std::size_t pages = tiff ? cv::imcount(path, cv::IMREAD_UNCHANGED) : 0;
-  if (pages == 0) fail_input("this is no TIFF file, or it is damaged or truncated", path, again);
-  for (std::size_t page = 0; page < pages; ++page) {
-    const cv::Mat image = read_tiff_page(path, static_cast<int>(page));
-    if (image.empty())
-      fail_input("the TIFF file is damaged or truncated", path + ", page " + std::to_string(page + 1), again);
-    stack.add(image, path, pages == 1 ? -1 : static_cast<int>(page));
-  }
-}
-
-/// The last run of digits of a stem as a number, and the text before it.
-bool slice_number(const std::string& path, std::string& prefix, long long& number) {
-  const std::string stem = stem_of(path);
-  const std::size_t end = stem.find_last_of("0123456789");
-  if (end == std::string::npos) return false;
-  std::size_t begin = end + 1;
-  while (begin > 0 && stem[begin - 1] >= '0' && stem[begin - 1] <= '9') --begin;
-  if (end + 1 - begin > 15) return false;
-  prefix = stem.substr(0, begin);
-  number = std::stoll(stem.substr(begin, end + 1 - begin));
-  return true;
+  read_tiff(path, stack.warnings(), [&](SliceImage&& image, int page, bool several) { stack.add(image, path, several ? page : -1); });
 }
 
 /// Warns of holes in the numbering; slices are stacked as neighbours all the same.
 void warn_of_missing(const std::vector<std::string>& files, std::vector<std::string>& warnings) {
   std::vector<long long> numbers;
   std::string common;
-  for (const std::string& file : files) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) names.push_back(stem_of(file));
+  const NameOrder order(names);
+  for (const std::string& name : names) {
     std::string prefix;
     long long number = 0;
-    if (!slice_number(file, prefix, number) || (!numbers.empty() && prefix != common)) return;
+    if (!order.last_number(name, prefix, number) || (!numbers.empty() && prefix != common)) return;
     common = prefix;
     numbers.push_back(number);
   }
@@ -200,22 +125,10 @@ void warn_of_missing(const std::vector<std::string>& files, std::vector<std::str
 
 LabelVolume read_slices(const std::vector<std::string>& files,
                         const std::optional<std::array<double, 3>>& spacing_mm) {
+  const Quiet one_at_a_time;  // libtiff's handlers are global
   Stacker stack(files.size());
-  LabelVolume volume;
-  std::string current;
-  try {
-    const Quiet quiet;
-    const SilentLog silent;
-    for (const std::string& file : files) {
-      current = file;
-      add_file(stack, file);
-    }
-    volume = stack.finish();
-  } catch (const cv::Exception& e) {
-    fail_input("the image is damaged (" + e.err + ")", current, again);
-  } catch (const std::bad_alloc&) {
-    fail_input("the stack of slices does not fit into memory", current, "crop the slices");
-  }
+  for (const std::string& file : files) add_file(stack, file);
+  LabelVolume volume = stack.finish(files[0]);
   volume.kind = "slices";
   volume.anatomical = false;
   if (spacing_mm)

@@ -9,6 +9,7 @@ namespace stackmesh {
 /// Fields by lower-case name, NRRD's keys ("name:=value") with their own case and a leading '='; where the header ends.
 struct TextHeader {
   std::map<std::string, std::string> fields;
+  std::vector<std::string> list;  ///< NRRD, "data file: LIST": the names that follow
   std::uint64_t end = 0;
   bool ended = false;
   std::string get(const std::string& name) const {
@@ -18,6 +19,11 @@ struct TextHeader {
 };
 
 constexpr std::size_t kMaxHeader = 1 << 22;
+
+/// The beginning of a file, at most kMaxHeader bytes. @throws Error(input)
+std::string read_header_text(const std::string& path);
+/// The line that begins at `at`, without its end; `at` goes behind it. False at the end of the text.
+bool next_line(const std::string& text, std::size_t& at, std::string& line);
 
 /// @throws Error(input) when it is no NRRD file.
 TextHeader read_nrrd_header(const std::string& path);

@@ -1,36 +1,51 @@
 #pragma once
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "image/file_names.h"
 #include "image/slicer_segments.h"
+#include "image/voxel_data.h"
 #include "model/geometry.h"
 
 namespace stackmesh {
 
-/// What the raw header of a volume file says that ITK would mend in silence or not tell.
-struct HeaderFacts {
-  std::vector<std::string> warnings;
-  SlicerSegmentation segmentation;     ///< NRRD: the segments of 3D Slicer, where it names any
+/// What the header of a volume file says. The reader needs no other library, so that nothing is mended or overlooked in silence.
+struct VolumeHeader {
+  std::array<int, 3> size = {1, 1, 1};
+  std::array<double, 3> spacing_mm = {1, 1, 1};
+  Vec3 origin_mm;  ///< centre of voxel (0, 0, 0), LPS
+  std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< of unit length, LPS; at right angles only nearly
+  VoxelData data;
   int layers = 1;                      ///< values a voxel, of segments that overlap
-  double unit_mm = 1;                  ///< NIfTI: what the file's unit of length is, where it says so
-  bool has_forms = true;               ///< NIfTI: false when it carries no orientation at all
-  std::vector<Vec3>
-      sform;  ///< NIfTI: columns of its sform in its own unit, LPS: three axes, origin; or empty
-  std::vector<Vec3> raw_origin;   ///< NIfTI: one entry, the origin of the form in use, in its own unit, LPS
-  bool compressed = false;        ///< the voxels are a gzip or zlib stream ...
-  std::string data_path;          ///< ... of this file
-  std::uint64_t data_offset = 0;  ///< ... beginning here
-  std::uint64_t data_size = UINT64_MAX;  ///< ... of at most this many bytes
-  std::uint64_t needed_bytes = 0;        ///< ... which must yield at least this much
+  std::array<std::uint64_t, 4> step = {};  ///< values from one voxel to the next along x, y, z, and from layer to layer; set where layers > 1
+  double slope = 1, intercept = 0;     ///< what stands for a stored value v is slope * v + intercept
+  bool nan_is_zero = false;            ///< NIfTI: values that are not finite stand for nothing, as its own library reads them
+  SlicerSegmentation segmentation;     ///< NRRD: the segments of 3D Slicer, where it names any
+  std::vector<std::string> warnings;
+  bool is_scaled() const { return slope != 1 || intercept != 0; }
 };
 
-/// Checks the header of a volume file before ITK sees it: sizes, spacing, directions, completeness.
+/// Reads the header of a volume file: sizes, spacing, directions, where the voxels are, and that their bytes are there.
+/// A header that names other files may name those of its own folder (and of folders therein); `allow_outside` lets it name any.
 /// @throws Error(input)
-HeaderFacts check_volume_header(const std::string& path, FileFormat format);
+VolumeHeader read_volume_header(const std::string& path, FileFormat format, bool allow_outside = false);
 
-/// @throws Error(input) unless all three spacings are finite and positive.
+/// @throws Error(input) unless all spacings are finite and positive.
 void require_spacing(const double* spacing, std::size_t count, const std::string& path);
+
+// ---- for the readers of the formats ----
+VolumeHeader read_nifti_header(const std::string& path);
+VolumeHeader read_gipl_header(const std::string& path);
+VolumeHeader read_nrrd_volume_header(const std::string& path, bool allow_outside);
+VolumeHeader read_metaimage_header(const std::string& path, bool allow_outside);
+
+/// The vector divided by its length: exactly 1 or -1 along an axis.
+inline Vec3 unit(Vec3 v) {
+  const double length = norm(v);
+  return {v.x / length, v.y / length, v.z / length};
+}
+
+/// The sizes along all axes as whole numbers above 0. @throws Error(input)
+std::vector<std::uint64_t> whole_sizes(const std::vector<double>& sizes, double dimensions, const std::string& path);
 
 }  // namespace stackmesh

@@ -8,6 +8,8 @@
 namespace stackmesh {
 namespace {
 
+constexpr std::int64_t kLargestNumber = std::int64_t{1} << 53;  // ranges up to here can be walked without an overflow
+
 /// VTK's type of an Abaqus element; 0: one that carries no geometry for us (lines, springs, masses).
 int vtk_type_of(const std::string& type) {
   const auto begins = [&](const char* with) { return type.rfind(with, 0) == 0; };
@@ -125,6 +127,7 @@ class DeckReader {
   std::int64_t whole(std::string_view field, const char* what) const {
     const auto n = to_integer(field);
     if (!n) in_.fail(std::string("a ") + what + " that is not a whole number");
+    if (*n > kLargestNumber || *n < -kLargestNumber) in_.fail(std::string("a ") + what + " that is too large");
     return *n;
   }
 
@@ -187,6 +190,7 @@ class DeckReader {
         sets_[set_].members.push_back(lower_case(f));
         continue;
       }
+      whole(f, "number of an element");
       sets_[set_].ranges.push_back({*id, *id, 1});
     }
   }

@@ -15,6 +15,7 @@
 #include "fem/split_parts.h"
 #include "image/read_image.h"
 #include "meshio/read_mesh.h"
+#include "pipeline/output_files.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
@@ -32,13 +33,16 @@ class FemRun {
   FemRun(const FemRunOptions& options, Progress& progress) : o_(options), progress_(progress) {}
 
   RunReport run() {
+    std::vector<std::string> all = o_.mesh.outputs;
+    all.insert(all.end(), o_.mesh.reports.begin(), o_.mesh.reports.end());
+    check_output_files(all, {o_.image, o_.materials, o_.mesh.input.paths[0]});
     // What the user wrote is read before anything long begins.
     if (!o_.materials.empty()) {
       plan_ = read_law(o_.materials);
       if (o_.erode_px) plan_->mapping.erode_px = *o_.erode_px;
       plan_->mapping.threads = o_.mesh.threads;
     }
-    if (!o_.image.empty()) image_ = read_image(o_.image);
+    if (!o_.image.empty()) image_ = read_image(o_.image, {"", o_.mesh.input.allow_outside});
     const std::vector<std::string>& inputs = o_.mesh.input.paths;
     return inputs.size() == 1 && is_readable_mesh(inputs[0]) ? from_mesh(inputs[0]) : from_labels();
   }

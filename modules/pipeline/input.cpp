@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "fair/true_grid.h"
 #include "fem/label_table.h"
 #include "image/dicom_series.h"
@@ -88,6 +89,7 @@ void read_volume(const InputOptions& options, Input& input) {
   read.spacing_mm = options.spacing_mm;
   read.labels = options.labels;
   read.series = options.series;
+  read.allow_outside = options.allow_outside;
   LabelVolume volume = read_label_volume(options.paths[0], read);
   input.kind = volume.kind;
   input.warnings = volume.warnings;
@@ -116,6 +118,10 @@ Input read_input(const InputOptions& options) {
   else if (const std::string file = structure_set_in(options.paths); !file.empty()) read_structures(options, file, input);
   else read_volume(options, input);
   if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);
+  // Names come from files and file names: control characters in them would reach terminals and split lines of decks.
+  for (LabelInfo& label : input.labels) label.name = printable(label.name);
+  if (input.volume)
+    for (LabelInfo& label : input.volume->labels) label.name = printable(label.name);
   return input;
 }
 

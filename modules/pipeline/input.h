@@ -17,6 +17,7 @@ struct InputOptions {
   std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   std::string series;                               ///< DICOM: series instance UID where a folder holds several
+  bool allow_outside = false;                       ///< a detached header may name data files outside of its folder
   bool merge = false;                               ///< selected labels become one
   Caps caps = Caps::automatic;                      ///< how drawn labels end: other labels go on beside them
   std::vector<std::pair<std::string, LabelEndCaps>> label_caps;  ///< by name or number

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "pipeline/complete_report.h"
+#include "pipeline/output_files.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
@@ -78,6 +79,11 @@ class MeshRun {
           fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
     check_report_names(o_.reports);
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
+    std::vector<std::string> all = o_.outputs, inputs = o_.input.paths;
+    all.insert(all.end(), o_.reports.begin(), o_.reports.end());
+    all.insert(all.end(), o_.names_outputs.begin(), o_.names_outputs.end());
+    inputs.push_back(o_.input.names);
+    check_output_files(all, inputs);
   }
 
   void warn(const std::string& text) { report_.warnings.push_back(text); }
@@ -317,6 +323,7 @@ class MeshRun {
 
   void take_filled() {
     FillResult result = std::move(*filled_);
+    for (const std::string& w : result.warnings) warn(w);
     if (!result.fallback.empty()) warn("the volume mesher fell back: " + result.fallback + "; then " + result.message);
     if (result.status == FillResult::Status::verified) {
       report_.closure = "verified";

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
+#include "pipeline/output_files.h"
 #include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/turn_as_a_whole.h"
@@ -482,6 +483,9 @@ void check_names(const ValidateRunOptions& o) {
   check_report_names(o.reports);
   if (o.mesh_space != "auto" && o.mesh_space != "lps" && o.mesh_space != "ras")
     fail_usage("unknown space '" + o.mesh_space + "'", "--mesh-space", "choose lps, ras or auto");
+  std::vector<std::string> inputs = o.meshes;
+  if (o.against) inputs.insert(inputs.end(), o.against->paths.begin(), o.against->paths.end());
+  check_output_files(o.reports, inputs);
 }
 
 void describe_input(const Against& against, RunReport& report) {

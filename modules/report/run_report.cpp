@@ -1,12 +1,12 @@
 #include "report/run_report.h"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "report/comparison.h"
 
 namespace stackmesh {
@@ -316,9 +316,7 @@ std::string to_json(const std::vector<RunReport>& reports) {
 }
 
 Limits read_limits(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail_input("the limits cannot be opened", path, "check the name and the rights");
-  const Json j = Json::parse(file, nullptr, false);
+  const Json j = Json::parse(read_json_text(path, "the file of limits", "check the name and the rights"), nullptr, false);
   if (j.is_discarded() || !j.is_object()) fail_input("the limits are no JSON object", path, "write {\"dice_warn\": 0.9, ...}; a report lists the names under limits");
   Limits limits;
   std::string known;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "base/error.h"
@@ -144,6 +145,13 @@ class Filler {
                                      1e6 * std::clamp(options.timeout_s, 0.0, 1e9)))) {}
 
   FillResult run() {
+    FillResult result = run_attempts();
+    result.warnings = std::move(warnings_);
+    return result;
+  }
+
+ private:
+  FillResult run_attempts() {
     if (complex_.triangles.empty())
       return failure(Status::empty, "there is nothing to fill: the surface has no triangles");
     if (std::all_of(complex_.triangles.begin(), complex_.triangles.end(),
@@ -169,8 +177,9 @@ class Filler {
       std::string note;
       if (const std::vector<Group> own = groups(); !own.empty()) {
         FillResult result = attempt({true, "", scale}, until, own);
-        if (result.status == Status::verified) return result;
+        if (result.status == Status::verified || killed_) return result;
         hopeless_ = false;  // the whole says why
+        if (result.status == Status::crashed || result.status == Status::timed_out) note = result.message;  // another mesh than it gives elsewhere
         if (!options_.label_max_volume_mm3.empty()) note = result.message + ", so labels have no volume bound of their own";
       }
       FillResult result = attempt({true, "", scale}, until);
@@ -192,6 +201,7 @@ class Filler {
           Call{false, "T1e-12", scale}, Call{false, "T1e-16", scale}, Call{false, "T1e-12", 4 * scale}}) {
       if (Clock::now() >= deadline_) break;
       result = attempt(next, deadline_);
+      if (killed_) return result;
       if (result.status != Status::verified) continue;
       const std::string note = before.empty() ? first.message : before;
       if (refinement_pays) {
@@ -203,7 +213,6 @@ class Filler {
     return first;
   }
 
- private:
   static FillResult failure(Status status, std::string message, std::vector<std::int32_t> triangles = {}) {
     FillResult result;
     result.status = status;
@@ -275,7 +284,7 @@ class Filler {
     return sum;
   }
 
-  Reply call_worker(const std::string& switches, const Call& call, bool sized, const Compact& part, Clock::time_point deadline) const {
+  Reply call_worker(const std::string& switches, const Call& call, bool sized, const Compact& part, Clock::time_point deadline) {
     std::vector<Vec3> moved;
     const bool as_is = call.z_scale == 1 && call.turns == 0;
     if (!as_is) {
@@ -284,7 +293,16 @@ class Filler {
     }
     std::vector<double> edges;
     if (sized) edges = sizes(part);
-    return worker::run(program_, {switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges, &part.corners}, deadline, options_.given_up);
+    const worker::Request request{switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges, &part.corners};
+    Reply reply = worker::run(program_, request, deadline, options_.given_up);
+    if (!reply.killed) return reply;
+    // Someone else ended it (an operator, the kernel for want of memory): the same call again, so that the mesh is the same or none.
+    const std::string how = reply.text;
+    reply = worker::run(program_, request, deadline, options_.given_up);
+    const std::lock_guard<std::mutex> lock(warnings_mutex_);
+    if (reply.killed) hopeless_ = killed_ = true;
+    else warnings_.push_back("the volume mesher was started again, as " + how);
+    return reply;
   }
 
   FillResult attempt(const Call& call, Clock::time_point deadline) {
@@ -484,6 +502,9 @@ class Filler {
   worker::Program program_;
   Clock::time_point deadline_;
   Compact input_;
+  std::vector<std::string> warnings_;
+  std::mutex warnings_mutex_;
+  std::atomic<bool> killed_{false};    // twice in a row
   std::atomic<bool> hopeless_{false};  // no worker to be had, or an invalid complex: trying again is no use
 };
 

@@ -45,6 +45,7 @@ struct FillResult {
   Status status = Status::refused;
   std::string message;   ///< one line: what filled it, or why nothing did
   std::string fallback;  ///< one line: what was tried before in vain; empty when the first attempt succeeded
+  std::vector<std::string> warnings;  ///< a worker that was killed from outside and started again
   TetMesh mesh;         ///< the complex's points come first, bit-identical; points added inside follow
   std::vector<std::int32_t>
       offending_triangles;  ///< indices into complex.triangles, ascending: where it was refused

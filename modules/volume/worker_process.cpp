@@ -62,7 +62,7 @@ class Child {
     std::vector<char*> argv{const_cast<char*>(path.c_str())};
     for (const std::string& arg : program.args) argv.push_back(const_cast<char*>(arg.c_str()));
     argv.push_back(nullptr);
-    const std::string guard = std::string(kGuardVariable) + "=1";
+    const std::string guard = std::string(kGuardVariable) + "=" + std::to_string(getpid());
     // TetGen asks for memory in many small blocks and gives none back: large pages, grown in large steps, save it a
     // fifth of its time. What the user has set comes last and counts.
     static constexpr char kTunables[] = "GLIBC_TUNABLES=";
@@ -256,6 +256,12 @@ class Exchange {
   AnswerHeader header_;
 };
 
+/// A signal that someone sends; the others are faults of the process itself.
+bool is_from_outside(int signal) {
+  const auto faults = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP};
+  return std::find(faults.begin(), faults.end(), signal) == faults.end();
+}
+
 std::string how_it_ended(std::optional<int> status) {
   if (!status) return "ended its answer too early";
   if (WIFSIGNALED(*status)) {
@@ -304,7 +310,9 @@ Reply run(const Program& program, const Request& request, Clock::time_point dead
     case Exchange::End::closed: {
       const auto grace = std::min(deadline, Clock::now() + std::chrono::seconds(5));
       reply.kind = exchange.greeted() ? Reply::Kind::died : Reply::Kind::not_a_worker;
-      reply.text = "the worker " + name + " " + how_it_ended(child.wait_until(grace));
+      const std::optional<int> status = child.wait_until(grace);
+      reply.killed = status && WIFSIGNALED(*status) && is_from_outside(WTERMSIG(*status));
+      reply.text = "the worker " + name + " " + how_it_ended(status);
       break;
     }
   }

@@ -33,6 +33,7 @@ struct Reply {
   };
   Kind kind = Kind::died;
   std::string text;  // not yet one line
+  bool killed = false;  // by a signal from outside, without an answer: not TetGen's doing
   std::vector<Vec3> added_points;
   std::vector<std::int32_t> tets, neighbours, faces;
 };

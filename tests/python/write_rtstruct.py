@@ -195,6 +195,9 @@ def case(name, path):
         write(path, [structure("Zero", box(0, 0, 10), number=0), structure("Seven", box(20, 0, 10), number=7)])
     elif name == "many":
         write(path, [structure(f"S{i}", box(20 * (i % 10), 20 * (i // 10), 10, [0, 2, 4])) for i in range(90)])
+    elif name == "long":  # contours of more than 64 kB, which explicit VRs cannot hold as DS: pydicom stores them as UN
+        t = 2 * np.pi * np.arange(4000) / 4000
+        write(path, [structure("Body", [[(100 * np.cos(a), 80 * np.sin(a), z) for a in t] for z in HEIGHTS[:4]])])
     elif name == "empty":
         write(path, [structure("Nothing", []), structure("Box", box(0, 0, 20))])
     elif name == "none":

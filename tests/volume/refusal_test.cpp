@@ -258,8 +258,15 @@ TEST(FillWorker, FailedRefinementFallsBackToPlainFilling) {
 TEST(FillWorker, WorkerThatAlwaysDiesIsACrash) {
   const FillResult r = fill_volume(cube(4), picky("no such switch", true));
   EXPECT_EQ(r.status, Status::crashed);
-  EXPECT_NE(r.message.find("signal 9"), std::string::npos) << r.message;
+  EXPECT_NE(r.message.find("signal 6"), std::string::npos) << r.message;
   EXPECT_TRUE(r.mesh.tets.empty());
+}
+
+TEST(FillWorker, WorkerThatIsKilledTwiceIsACrashAndNothingElseIsTried) {
+  const FillResult r = fill_volume(cube(20), shell("kill -9 $$"));
+  EXPECT_EQ(r.status, Status::crashed);
+  EXPECT_NE(r.message.find("signal 9"), std::string::npos) << r.message;
+  EXPECT_EQ(r.fallback, "");
 }
 
 TEST(FillWorker, LeavesNoDescriptorAndNoChildBehind) {
