@@ -128,8 +128,9 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   const EnhanceArguments& e = a.enhance;
   o.sections.virtual_sections = parse_interpolate(e.interpolate);
   o.enhance = !e.off && !e.raw;
+  o.sections.band_asked = command.get_option("--band")->count() > 0;
   if (e.raw) {  // the voxels' own outlines
-    if (command.get_option("--band")->count() > 0) fail_usage("--band has no meaning beside --raw", "--raw", "leave one of them out: the raw surface follows the outlines of the pixels");
+    if (o.sections.band_asked) fail_usage("--band has no meaning beside --raw", "--raw", "leave one of them out: the raw surface follows the outlines of the pixels");
     o.sections.band_px = 0;
   }
   if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 10000000;

@@ -39,6 +39,7 @@ struct CornerRules {
   bool part = false;  ///< draw contours that pass a corner on both sides a quarter pixel apart
   std::vector<std::uint64_t>
       keep;  ///< keys (components.h) of corners that stay where they are and that simplification must not drop, ascending
+  bool hold = false;  ///< faired corners stay within half a pixel of where they were
   const std::vector<FairedLabels::Corner>* faired = nullptr;  ///< where the other corners are drawn; needs `part`
 };
 

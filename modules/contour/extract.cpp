@@ -101,8 +101,10 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
       if (above != nullptr) touching_corners(components, slice, k, *above, k + 1, rules.keep);
       std::sort(rules.keep.begin(), rules.keep.end());
     }
+    // Where pieces of a label touch across slices, contours that leave their pixels could join them.
+    const bool free = faired != nullptr && faired->free[k] && rules.keep.empty();
+    rules.hold = !free;
     SliceArcs traced = trace_arcs(slice, rules);
-    const bool free = faired != nullptr && (faired->free || k % period != 0);
     if (free) untangle(traced.arcs);
     stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, free, k * volume.spacing_mm[axes.w]);
     stack.sections[k].interpolated = k % period != 0;

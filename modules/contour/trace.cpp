@@ -239,9 +239,12 @@ class SliceTracer {
     return it != rules_.faired->end() && it->x == x && it->y == y && it->part == part ? &*it : nullptr;
   }
 
-  static GridPoint displaced(const FairedLabels::Corner& c) {
-    return {c.x * kGridPerPixel + static_cast<std::int32_t>(std::lround(c.dx * kGridPerPixel)),
-            c.y * kGridPerPixel + static_cast<std::int32_t>(std::lround(c.dy * kGridPerPixel))};
+  GridPoint displaced(const FairedLabels::Corner& c) const {
+    const auto units = [&](float d) {
+      constexpr float most = 0.499F;
+      return static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * kGridPerPixel));
+    };
+    return {c.x * kGridPerPixel + units(c.dx), c.y * kGridPerPixel + units(c.dy)};
   }
 
   CrackVertex vertex(int x, int y) const {

@@ -162,11 +162,15 @@ class Enhancement {
     result_.counts.held_back = r.held_back;
   }
 
-  double reference_cell_mm() const { return 1.5 * std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm)); }
+  double reference_cell_mm() const {
+    const double step = std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm));
+    return (o_.faired != nullptr ? 0.75 : 1.5) * step;  // the triangles of faired interfaces are small and even
+  }
 
   /// Draws the stitched vertices to the faired interfaces.
   void settle(ComplexMesh& mesh) {
-    const Reference reference(mesh, reference_cell_mm(), o_.threads, &*faired_);
+    reference_.emplace(mesh, reference_cell_mm(), o_.threads, &*faired_);  // what it keeps of the mesh does not move here
+    const Reference& reference = *reference_;
     const double reach = 2 * std::max(o_.pixel_mm, o_.gap_mm);
     std::vector<Vec3> to = mesh.points;
     const std::vector<double> bends = surface_bends(*faired_, o_.threads);
@@ -190,6 +194,7 @@ class Enhancement {
     const SmoothingResult r = move_guarded(mesh, to, keep, o_.threads);
     result_.counts.smoothed = r.moved;
     result_.counts.held_back = r.held_back;
+    faired_.reset();
   }
 
   SizingOptions sizing(const ComplexMesh& mesh) {
@@ -310,8 +315,8 @@ class Enhancement {
     result_.expected_triangles = static_cast<std::size_t>(triangles);
     result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size).at(1));
     refuse_giants(triangles);
-    const Reference reference(mesh, reference_cell_mm(), o_.threads, faired_ ? &*faired_ : nullptr);
-    faired_.reset();
+    if (!reference_) reference_.emplace(mesh, reference_cell_mm(), o_.threads);
+    const Reference& reference = *reference_;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
     // An edge length that was asked for gives way only where something would be cut off.
@@ -393,7 +398,8 @@ class Enhancement {
   std::vector<double> wall_;         // and how thick its walls are there, up to the reach
   double wall_reach_ = 0;
   std::map<Label, ShellCount> shells_;  // of each label
-  std::optional<ComplexMesh> faired_;   // where the interfaces run, until the reference is made
+  std::optional<ComplexMesh> faired_;   // where the interfaces run, until the mesh is drawn there
+  std::optional<Reference> reference_;  // the surface that the remeshed one stands for
   SurfaceSamples samples_;  // of the stitched surface
 };
 

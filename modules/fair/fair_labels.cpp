@@ -98,7 +98,7 @@ FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const Fai
   bend_least(net, bend);
   restore_local_volumes(net, static_cast<int>(wide * kReach), kRounds, options.threads);
   FairedLabels out;
-  out.free = options.band_px > 0.5;
+  for (int z = 0; z < net.size[2]; ++z) out.free.push_back(options.band_px > 0.5 || z % n.period != 0);
   out.slices.resize(net.size[2]);
   parallel_for(out.slices.size(), options.threads, [&](std::size_t z) { out.slices[z] = cut_at(net, static_cast<int>(z)); });
   if (options.surface) out.surface = surface_of(net, volume, options.threads);

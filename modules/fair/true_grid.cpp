@@ -68,7 +68,16 @@ std::optional<double> common_start(const std::vector<int>& changes, double lengt
   return changes[0] + 0.5 * (low + high);
 }
 
-std::optional<Blocks> find_blocks(const std::vector<char>& changed) {
+/// The roundest size of voxels within the range of lengths that explain the changes; its middle where none is round.
+double roundest(double first, double last, double stored_mm, const std::vector<int>& changes) {
+  for (double step : {1.0, 0.5, 0.25, 0.1, 0.05}) {
+    const double length = std::round(0.5 * (first + last) * stored_mm / step) * step / stored_mm;
+    if (length > first && length < last && common_start(changes, length)) return length;
+  }
+  return 0.5 * (first + last);
+}
+
+std::optional<Blocks> find_blocks(const std::vector<char>& changed, double stored_mm) {
   std::vector<int> changes;
   for (std::size_t i = 0; i < changed.size(); ++i)
     if (changed[i]) changes.push_back(static_cast<int>(i));
@@ -93,7 +102,7 @@ std::optional<Blocks> find_blocks(const std::vector<char>& changed) {
       }
     }
     if (!first) continue;
-    const double length = 0.5 * (*first + *last);
+    const double length = roundest(*first, *last, stored_mm, changes);
     if (const auto start = common_start(changes, length)) return Blocks{length, std::fmod(*start, length)};
   }
   return std::nullopt;
@@ -118,6 +127,22 @@ Planes planes_of(const Blocks& blocks, int count) {
   }
 }
 
+/// True where a label reaches the image's border along an axis.
+bool reaches_border(const LabelVolume& volume, int axis) {
+  const int last = volume.size[axis] - 1;
+  for (int k = 0; k < volume.size[2]; k += axis == 2 ? std::max(last, 1) : 1)
+    for (int j = 0; j < volume.size[1]; j += axis == 1 ? std::max(last, 1) : 1)
+      for (int i = 0; i < volume.size[0]; i += axis == 0 ? std::max(last, 1) : 1)
+        if (volume.voxels[volume.index(i, j, k)] != 0) return true;
+  return false;
+}
+
+/// True where the image's border cuts the first or the last block.
+bool cut_at_border(const Blocks& blocks, const Planes& planes, int count) {
+  const double end = planes.begin + static_cast<double>(planes.plane.size()) * blocks.length;
+  return planes.begin < -0.01 || end > count + 0.01;
+}
+
 }  // namespace
 
 std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads) {
@@ -127,10 +152,14 @@ std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads) {
   for (int axis = 0; axis < 3; ++axis) {
     Blocks blocks;
     if (volume.size[axis] > 1)
-      if (const auto found = find_blocks(changes_along(volume, axis, threads))) blocks = *found;
+      if (const auto found = find_blocks(changes_along(volume, axis, threads), volume.spacing_mm[axis])) blocks = *found;
+    planes[axis] = planes_of(blocks, volume.size[axis]);
+    if (cut_at_border(blocks, planes[axis], volume.size[axis]) && reaches_border(volume, axis)) {
+      blocks = {};  // the labels would go on beyond the image
+      planes[axis] = planes_of(blocks, volume.size[axis]);
+    }
     finer = finer || blocks.length > 1;
     grid.stored_per_voxel[axis] = blocks.length;
-    planes[axis] = planes_of(blocks, volume.size[axis]);
   }
   if (!finer) return std::nullopt;
   LabelVolume& out = grid.volume;

@@ -17,7 +17,7 @@ struct FairedLabels {
     float dx, dy;
   };
   std::vector<std::vector<Corner>> slices;  ///< of each slice, ascending (y, x, part); corners that are absent stay where they are
-  bool free = false;         ///< corners of real slices, too, may be further than half a pixel from where they were; those of interpolated ones always
+  std::vector<char> free;    ///< of each slice: corners may be further than half a pixel from where they were, so that pixel centres change label
   InterfaceComplex surface;  ///< the interfaces as a whole, in stack coordinates (mm); open at the image's border, and not free of intersections
 };
 

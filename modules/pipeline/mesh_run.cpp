@@ -134,6 +134,8 @@ class MeshRun {
   void make_sections() {
     check_stack_axis(input_, o_.sections.contours.axis);
     if (input_.sections) {
+      if (o_.sections.band_asked)
+        fail_usage("--band has no meaning for drawn contours, which are kept exactly", input_.path, "leave it out");
       stack_ = std::move(*input_.sections);
       for (const Section& s : stack_.sections) report_.contours.vertices_traced += s.points.size();
       add_virtual_sections(stack_, o_.sections.virtual_sections, o_.threads, report_.warnings);
@@ -143,6 +145,7 @@ class MeshRun {
       options.faired_surface = o_.enhance;
       VolumeSections made = volume_sections(*input_.volume, options, progress_);
       ContourResult& c = made.contours;
+      for (const std::string& w : made.warnings) warn(w);
       faired_ = std::move(made.faired);
       stack_ = std::move(c.stack);
       axis_ = c.axis;

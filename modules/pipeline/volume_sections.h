@@ -1,5 +1,7 @@
 #pragma once
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/progress.h"
 #include "contour/extract.h"
@@ -14,11 +16,13 @@ struct SectionOptions {
   std::optional<int> virtual_sections;  ///< per gap; unset: as many as make it about a pixel
   bool faired_surface = false;          ///< also give the faired interfaces as a whole
   bool as_stored = false;               ///< labels that are stored finer than they were made stay as they are stored
+  bool band_asked = false;              ///< the user chose band_px
   double band_px = 0.5;                 ///< fairing (FairOptions); 0: contours along the pixels
 };
 
 struct VolumeSections {
   ContourResult contours;
+  std::vector<std::string> warnings;
   InterfaceComplex faired;  ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
 };
 

@@ -66,7 +66,7 @@ class InputTest : public program::ProgramTest {
   void expect_corners(const std::string& name) {
     SCOPED_TRACE(name);
     const Json wanted = expected(name);
-    mesh(wanted.at("path"), {"--simplify", "0", "--interpolate", "0", "--caps", "flat", "--label", wanted.at("labels")[0].at("label").dump()});
+    mesh(wanted.at("path"), {"--simplify", "0", "--band", "0", "--interpolate", "0", "--caps", "flat", "--label", wanted.at("labels")[0].at("label").dump()});
     const std::vector<std::array<double, 3>> found = vertices();
     ASSERT_EQ(wanted.at("corners").size(), 8u);
     for (const Json& c : wanted.at("corners")) {

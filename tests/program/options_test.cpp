@@ -117,7 +117,7 @@ TEST_F(Options, CapsByName) {
 TEST_F(Options, TheAxisCanBeChosen) {
   for (const auto& [axis, sections] :
        {std::pair<const char*, int>{"x", 26}, {"y", 22}, {"z", 13}, {"auto", 13}}) {
-    const Json r = mesh({border_, "--axis", axis, "--simplify", "0"});
+    const Json r = mesh({border_, "--axis", axis, "--simplify", "0", "--band", "0"});
     EXPECT_EQ(r.at("input").at("axis"), std::string(axis) == "auto" ? "z" : axis);
     EXPECT_EQ(r.at("input").at("sections"), sections);
     for (const Json& l : r.at("labels")) {
@@ -128,11 +128,11 @@ TEST_F(Options, TheAxisCanBeChosen) {
 }
 
 TEST_F(Options, SnapAndSimplifyChangeTheVertexCount) {
-  const Json cracks = mesh({testdata("vessel.nii.gz"), "--simplify", "0"}),
-             simple = mesh({testdata("vessel.nii.gz")});
+  const Json cracks = mesh({testdata("vessel.nii.gz"), "--band", "0", "--simplify", "0"}),
+             simple = mesh({testdata("vessel.nii.gz"), "--band", "0"});
   EXPECT_GT(cracks.at("contours").at("vertices"), simple.at("contours").at("vertices"));
   EXPECT_EQ(cracks.at("contours").at("vertices_traced"), simple.at("contours").at("vertices_traced"));
-  const Json snapped = mesh({testdata("vessel.nii.gz"), "--snap", "0.3"});
+  const Json snapped = mesh({testdata("vessel.nii.gz"), "--band", "0", "--snap", "0.3"});
   EXPECT_EQ(snapped.at("surface").at("self_intersections"), 0);
   EXPECT_LE(snapped.at("stitched").at("vertices"), simple.at("stitched").at("vertices"));
   EXPECT_NEAR(row(snapped, 1).at("dice"), 1, 0.02);
@@ -169,7 +169,7 @@ TEST_F(Options, TetrahedraCanBeRefined) {
 }
 
 TEST_F(Options, TetrahedraOfOneLabelCanBeRefined) {
-  const Json plain = mesh({border_}), all = mesh({border_, "--max-volume", "0.5"}), fine = mesh({border_, "--max-volume", "1=0.5"});
+  const Json plain = mesh({border_, "--band", "0"}), all = mesh({border_, "--band", "0", "--max-volume", "0.5"}), fine = mesh({border_, "--band", "0", "--max-volume", "1=0.5"});
   const auto tets = [](const Json& r, int label) { return row(r, label).at("tets").get<double>(); };
   EXPECT_GT(tets(fine, 1), 3 * tets(plain, 1));
   EXPECT_NEAR(tets(fine, 1) / tets(all, 1), 1, 0.05);
@@ -371,7 +371,7 @@ TEST_F(Options, ContoursAsCntMeshAgainToTheSameAreas) {
   for (const auto& [input, labels, tolerance] :
        {std::tuple<const char*, Numbers, double>{"heart4.nii.gz", {1, 2, 3, 4, 5}, 1e-12},
         {"oblique.nii.gz", {100, 300}, 3e-4}}) {
-    const Ended r = succeeds({"contours", testdata(input), "-o", out("c.cnt")});
+    const Ended r = succeeds({"contours", testdata(input), "--band", "0", "-o", out("c.cnt")});
     EXPECT_NE(r.out.find("c_<label>.cnt"), std::string::npos) << r.out;
     std::vector<std::string> pairs;
     for (int label : labels)
@@ -398,7 +398,7 @@ TEST_F(Options, ContoursAsCntMeshAgainToTheSameAreas) {
 }
 
 TEST_F(Options, ContoursAsJsonHoldEveryLabelsPixelArea) {
-  succeeds({"contours", border_, "--simplify", "0", "-o", out("c.json")});
+  succeeds({"contours", border_, "--band", "0", "--simplify", "0", "-o", out("c.json")});
   const Json j = report("c.json"), info = Json::parse(succeeds({"info", border_, "--json"}).out);
   ASSERT_EQ(j.at("sections").size(), 13u);
   std::map<int, double> area;

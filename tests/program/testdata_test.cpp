@@ -161,7 +161,7 @@ TEST_P(Testdata, MeshesToEveryFormatInOneRun) {
 }
 
 TEST_P(Testdata, DirectStitchKeepsEveryCrackAndFillsExactly) {
-  succeeds(mesh({"--simplify", "0", "--no-enhance", "--caps", "flat", "--interpolate", "0", "-o",
+  succeeds(mesh({"--simplify", "0", "--band", "0", "--no-enhance", "--caps", "flat", "--interpolate", "0", "-o",
                  out("m.vtu"), "--report", out("R.json")}));
   const Json r = report();
   check(r);

@@ -116,7 +116,7 @@ struct Help {
 const std::vector<std::string> both = {
     "INPUT",         "--spacing",   "--output",      "--report",   "--label",
     "--merge",       "--deviation", "--edge-length", "--edge-min", "--edge-max",
-    "--interpolate", "--gradation", "--simplify",    "--snap",     "--smooth",
+    "--interpolate", "--gradation", "--simplify", "--band", "--as-stored", "--snap",     "--smooth",
     "--no-enhance",  "--caps",      "--axis",        "--space",    "--per-label",
     "--strict",      "--threads",   "--progress",    "--quiet",    "--verbose"};
 
@@ -142,7 +142,7 @@ TEST_F(Usage, HelpNamesEveryOption) {
 TEST_F(Usage, HelpTellsTheDefaults) {
   const std::string help = succeeds({"mesh", "--help"}).out;
   for (const char* text :
-       {"--simplify FLOAT=0.5", "--gradation FLOAT=1.3", "--snap FLOAT=0", "--caps TEXT=auto",
+       {"--band FLOAT=0.5", "--gradation FLOAT=1.3", "--snap FLOAT=0", "--caps TEXT=auto",
         "--axis TEXT=auto", "--space TEXT=lps", "--interpolate TEXT=auto", "=1000000", "=600", "=5"})
     EXPECT_NE(help.find(text), std::string::npos) << text << " is not in: " << help;
 }
