@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -50,7 +51,7 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::atan2(twice, d);
 }
 
-ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads) : points(complex.points) {
+ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads, bool inner_caps) : points(complex.points) {
   std::map<std::pair<Label, Label>, std::int32_t> numbers;
   std::pair<Label, Label> last = {0, 0};  // neighbours in the list mostly have the same pair
   for (const InterfaceTriangle& t : complex.triangles) {
@@ -85,12 +86,17 @@ ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, i
     for (std::int32_t v : m.v) star[v].push_back(static_cast<std::int32_t>(triangles.size()));
     triangles.push_back(m);
   }
-  mark_caps(cap_area_mm2);
+  mark_caps(cap_area_mm2, inner_caps);
   find_curves(threads);
   find_pinned(threads);
 }
 
-void ComplexMesh::mark_caps(double cap_area_mm2) {
+void ComplexMesh::mark_caps(double cap_area_mm2, bool inner_caps) {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (const Vec3& p : points) {
+    lowest = std::min(lowest, p.z);
+    highest = std::max(highest, p.z);
+  }
   const auto horizontal = [&](std::int32_t t) {
     const auto& v = triangles[t].v;
     return points[v[0]].z == points[v[1]].z && points[v[0]].z == points[v[2]].z;
@@ -99,6 +105,7 @@ void ComplexMesh::mark_caps(double cap_area_mm2) {
   std::vector<std::int32_t> region, around;
   for (std::int32_t s = 0; s < static_cast<std::int32_t>(triangles.size()); ++s) {
     if (seen[s] || !horizontal(s)) continue;
+    if (const double z = points[triangles[s].v[0]].z; !inner_caps && z != lowest && z != highest) continue;
     region.assign(1, s);
     seen[s] = 1;
     double area = 0;

@@ -27,7 +27,8 @@ class ComplexMesh {
  public:
   ComplexMesh() = default;
   /// `cap_area_mm2`: connected, exactly horizontal triangles of at least this area together are a flat cap.
-  ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads = 0);
+  /// @param inner_caps false: only the lowest and the highest plane of the complex can hold flat caps
+  ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads = 0, bool inner_caps = true);
 
   std::vector<Vec3> points;
   std::vector<MeshTriangle> triangles;
@@ -117,7 +118,7 @@ class ComplexMesh {
   InterfaceComplex to_complex() const;
 
  private:
-  void mark_caps(double cap_area_mm2);
+  void mark_caps(double cap_area_mm2, bool inner_caps);
   void find_curves(int threads);
   bool is_pinched(std::int32_t v) const;
   bool is_plain_for(std::int32_t v, std::int32_t side) const;

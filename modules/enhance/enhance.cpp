@@ -50,7 +50,7 @@ class Enhancement {
       result_.complex = stitched_;
       return std::move(result_);
     }
-    ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm, o_.threads);
+    ComplexMesh mesh(stitched_, 4 * o_.pixel_mm * o_.pixel_mm, o_.threads, o_.inner_caps);
     volumes_ = label_volumes(mesh);
     for (auto& [label, v] : volumes_) {
       const auto wanted = o_.label_volume_mm3.find(label);

@@ -14,6 +14,7 @@ struct EnhanceOptions {
                           ///< has three where they cost little distance, else a light one; 0: no smoothing at all
   const InterfaceComplex* faired = nullptr;  ///< where the interfaces really run (FairedLabels::surface), in the same coordinates: the surface is
                                              ///< drawn to it instead of being smoothed; null: the stitched surface is smoothed
+  bool inner_caps = true;                    ///< flat caps inside of the stack stay flat; else only those at its ends
   double pixel_mm = 1;    ///< in-plane pixel of the sections
   double gap_mm = 1;      ///< between sections; with the pixel it limits how far smoothing moves a vertex
   bool remesh = true;     ///< false: smoothing only

@@ -229,7 +229,11 @@ class MeshRun {
     EnhanceOptions options = o_.enhancement;
     options.pixel_mm = pixel_mm_;
     options.gap_mm = gap_mm_;
-    if (!faired_.triangles.empty()) options.faired = &faired_;
+    if (!faired_.triangles.empty()) {
+      options.faired = &faired_;
+      // An organ that ends inside of the image ends as its faired surface does, unless flat ends were asked for.
+      options.inner_caps = o_.stitch.caps == Caps::flat || !o_.label_caps_text.empty();
+    }
     options.drawn_gap_mm = drawn_gap_mm_;
     options.threads = o_.threads;
     options.label_edge_mm = label_sizes(o_.label_edges_text, "--edge-length");
