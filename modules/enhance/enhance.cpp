@@ -164,7 +164,7 @@ class Enhancement {
 
   double reference_cell_mm() const {
     const double step = std::max(0.5 * o_.pixel_mm, std::min(o_.pixel_mm, o_.gap_mm));
-    return (o_.faired != nullptr ? 0.75 : 1.5) * step;  // the triangles of faired interfaces are small and even
+    return 1.5 * step;
   }
 
   /// Draws the stitched vertices to the faired interfaces.
