@@ -58,13 +58,6 @@ struct NetOptions {
 
 Net build_net(const LabelVolume& volume, const StackAxes& axes, const NetOptions& options);
 
-/// A vertex's place relative to another one's cell, in voxels.
-inline Float3 place(const Net& net, std::int32_t v) {
-  const Cell& c = net.cell[v];
-  const Float3& w = net.way[v];
-  return {static_cast<float>(c.x) + w[0], static_cast<float>(c.y) + w[1], static_cast<float>(c.z) + w[2]};
-}
-
 struct BendOptions {
   int order = 2;            ///< derivatives in the energy: 2 bending, 3 its change
   int iterations = 100;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include "stitch/point_in_polygon.h"
 
 namespace stackmesh {
 namespace {
@@ -36,15 +37,6 @@ double squared_distance(const Point& p, const Point& a, const Point& b) {
   const double t = length2 > 0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length2, 0.0, 1.0) : 0;
   const double x = p[0] - a[0] - t * dx, y = p[1] - a[1] - t * dy;
   return x * x + y * y;
-}
-
-bool is_inside(const Point& p, const Points& polygon) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
-    if ((polygon[i][1] > p[1]) != (polygon[j][1] > p[1]) &&
-        p[0] < (polygon[j][0] - polygon[i][0]) * (p[1] - polygon[i][1]) / (polygon[j][1] - polygon[i][1]) + polygon[i][0])
-      inside = !inside;
-  return inside;
 }
 
 /// Is every point of `from`, and the middle of every edge, within `reach` of the other contour?

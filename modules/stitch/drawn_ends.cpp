@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "stitch/missing_contours.h"
+#include "stitch/point_in_polygon.h"
 
 namespace stackmesh {
 namespace {
@@ -36,15 +37,6 @@ double smallest_usual_gap(const std::vector<ContourFile>& files) {
   for (const ContourFile& f : files)
     if (const double gap = usual_gap(f); gap > 0) least = std::min(least, gap);
   return std::isfinite(least) ? least : 0;
-}
-
-bool is_inside(const Point& p, const std::vector<Point>& polygon) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
-    if ((polygon[i][1] > p[1]) != (polygon[j][1] > p[1]) &&
-        p[0] < (polygon[j][0] - polygon[i][0]) * (p[1] - polygon[i][1]) / (polygon[j][1] - polygon[i][1]) + polygon[i][0])
-      inside = !inside;
-  return inside;
 }
 
 /// The area within the outermost contours.
