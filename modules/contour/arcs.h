@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "contour/components.h"
 #include "model/faired_labels.h"
 #include "model/slices.h"
 #include "model/stack.h"
@@ -37,15 +38,15 @@ struct CornerRules {
   /// True when two pixels of a label that touch by a corner hang together elsewhere in the volume.
   std::function<bool(int xa, int ya, int xb, int yb)> same_component;
   bool part = false;  ///< draw contours that pass a corner on both sides a quarter pixel apart
-  std::vector<std::uint64_t>
-      keep;  ///< keys (components.h) of corners that stay where they are and that simplification must not drop, ascending
+  std::vector<TouchingCorner> keep;  ///< corners that are drawn back from what they touch, that are not faired and that simplification must not drop, ascending
   bool hold = false;  ///< faired corners stay within half a pixel of where they were
   const std::vector<FairedLabels::Corner>* faired = nullptr;  ///< where the other corners are drawn; needs `part`
 };
 
 /// The crack contours of all labels of a slice as shared arcs. Where pixels touch by a corner only, one fixed
 /// rule decides (docs/contours.md): the background joins; else a label whose two pixels hang together
-/// elsewhere in the volume; else the corner stays a junction.
+/// elsewhere in the volume; else the corner stays a junction. A label that would touch itself there is parted by a short contour between the
+/// two other labels, if these differ.
 SliceArcs trace_arcs(const Slice& slice, const CornerRules& rules);
 
 /// Draws vertices of faired arcs back to their homes, half of the way at a time, until no two edges meet elsewhere than in common end points.

@@ -1,5 +1,7 @@
 #include "contour/components.h"
 
+#include <algorithm>
+
 namespace stackmesh {
 namespace {
 
@@ -15,7 +17,7 @@ bool joined_nearby(const Slice& slice, const Slice& other, int x, int y, int dx,
 /// A voxel of the slice goes on into the other slice, where its label's next component touches it by a
 /// corner.
 void touching_beside(const VoxelComponents& components, const Slice& slice, const Slice& other, int other_k,
-                     std::vector<std::uint64_t>& corners) {
+                     std::vector<TouchingCorner>& corners) {
   for (int y = 0; y + 1 < other.height; ++y) {
     const std::uint16_t* low = &other.pixels[static_cast<std::size_t>(y) * other.width];
     const std::uint16_t* high = low + other.width;
@@ -30,9 +32,10 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
         const int right = 1 - left;
         const std::uint16_t label = low[x + left];
         if (label == 0 || high[x + right] != label) continue;
-        if (slice.at(x + left, y) != label && slice.at(x + right, y + 1) != label) continue;
+        const int low_touches = slice.at(x + left, y) == label, high_touches = slice.at(x + right, y + 1) == label;
+        if (low_touches + high_touches == 0) continue;
         if (components.of(x + left, y, other_k) != components.of(x + right, y + 1, other_k))
-          corners.push_back(corner_key(x + 1, y + 1));
+          corners.push_back({corner_key(x + 1, y + 1), static_cast<std::uint8_t>(low_touches << left | high_touches << (right + 2))});
       }
     }
   }
@@ -41,7 +44,7 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
 }  // namespace
 
 void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other,
-                      int other_k, std::vector<std::uint64_t>& corners) {
+                      int other_k, std::vector<TouchingCorner>& corners) {
   touching_beside(components, slice, other, other_k, corners);
   for (int y = 0; y < slice.height; ++y) {
     const std::uint16_t* row = &slice.pixels[static_cast<std::size_t>(y) * slice.width];
@@ -62,10 +65,20 @@ void touching_corners(const VoxelComponents& components, const Slice& slice, int
           // The corners that pixel (x, y) shares with its neighbour.
           for (int cy = std::max(0, dy); cy <= std::min(1, 1 + dy); ++cy)
             for (int cx = std::max(0, dx); cx <= std::min(1, 1 + dx); ++cx)
-              corners.push_back(corner_key(x + cx, y + cy));
+              corners.push_back({corner_key(x + cx, y + cy), static_cast<std::uint8_t>(1 << ((1 - cx) + 2 * (1 - cy)))});
         }
     }
   }
+}
+
+void unite(std::vector<TouchingCorner>& corners) {
+  std::sort(corners.begin(), corners.end());
+  std::size_t n = 0;
+  for (const TouchingCorner& c : corners) {
+    if (n > 0 && corners[n - 1].key == c.key) corners[n - 1].quadrants |= c.quadrants;
+    else corners[n++] = c;
+  }
+  corners.resize(n);
 }
 
 }  // namespace stackmesh

@@ -7,11 +7,21 @@
 
 namespace stackmesh {
 
-/// Adds the corners of slice k (as corner keys) at which one of its components touches another one of the
-/// same label in a neighbouring slice, by an edge or a corner of voxels. Were contours simplified there, the
-/// two could grow together.
+/// A corner of a slice's pixels at which a component touches another one of its label.
+struct TouchingCorner {
+  std::uint64_t key;      ///< corner_key
+  std::uint8_t quadrants; ///< of the pixels of this slice that touch: bit dx + 2 dy for the one on sides dx, dy of the corner (0 low, 1 high)
+  bool operator<(const TouchingCorner& o) const { return key < o.key; }
+};
+
+/// Adds the corners of slice k at which one of its components touches another one of the same label in a neighbouring slice, by an edge or
+/// a corner of voxels. Were contours simplified there, the two could grow together; were they left where they are, the label would touch
+/// itself along an edge.
 void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other,
-                      int other_k, std::vector<std::uint64_t>& corners);
+                      int other_k, std::vector<TouchingCorner>& corners);
+
+/// Sorts them, one for each corner.
+void unite(std::vector<TouchingCorner>& corners);
 
 /// The key of pixel corner (x, y).
 inline std::uint64_t corner_key(int x, int y) {

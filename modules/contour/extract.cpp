@@ -23,9 +23,15 @@ std::vector<Label> labels_in(const Slice& slice, const LabelVolume& volume) {
   return out;
 }
 
-Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px, bool free, double z_mm) {
-  const std::vector<std::vector<GridPoint>> kept =
+Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px, bool free, bool middles, double z_mm) {
+  std::vector<std::vector<GridPoint>> kept =
       free ? simplify_free_arcs(traced.arcs, simplify_px * kGridPerPixel, longest_px) : simplify_arcs(traced.arcs, simplify_px, longest_px);
+  if (middles) {
+    // An edge from junction to junction has no vertex that could leave the section's plane: a label above and below it would touch itself.
+    for (auto& arc : kept)
+      if (arc.size() == 2 && arc[0] != arc[1] && (arc[0].x + arc[1].x) % 2 == 0 && (arc[0].y + arc[1].y) % 2 == 0)
+        arc.insert(arc.begin() + 1, {(arc[0].x + arc[1].x) / 2, (arc[0].y + arc[1].y) / 2});
+  }
   Section section;
   section.z_mm = z_mm;
   std::unordered_map<std::uint64_t, std::int32_t> ids;
@@ -99,14 +105,14 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
       rules.part = true;
       if (below != nullptr) touching_corners(components, slice, k, *below, k - 1, rules.keep);
       if (above != nullptr) touching_corners(components, slice, k, *above, k + 1, rules.keep);
-      std::sort(rules.keep.begin(), rules.keep.end());
+      unite(rules.keep);
     }
     // Where pieces of a label touch across slices, contours that leave their pixels could join them.
     const bool free = faired != nullptr && faired->free[k] && rules.keep.empty();
     rules.hold = !free;
     SliceArcs traced = trace_arcs(slice, rules);
     if (free) untangle(traced.arcs);
-    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, free, k * volume.spacing_mm[axes.w]);
+    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, free, faired != nullptr, k * volume.spacing_mm[axes.w]);
     stack.sections[k].interpolated = k % period != 0;
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;

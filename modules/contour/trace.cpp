@@ -28,6 +28,8 @@ struct Box {
 };
 
 // Steps along the cracks: +x, +y, -x, -y.
+constexpr std::int32_t kQuarter = kGridPerPixel / 4;
+
 constexpr std::array<int, 4> kStepX = {1, 0, -1, 0}, kStepY = {0, 1, 0, -1};
 
 class SliceTracer {
@@ -171,7 +173,7 @@ class SliceTracer {
                         ne = slice_.at(x, y);
     arc.left = dir == 0 ? ne : dir == 1 ? nw : dir == 2 ? sw : se;
     arc.right = dir == 0 ? se : dir == 1 ? ne : dir == 2 ? nw : sw;
-    arc.chain.push_back(vertex(x, y));
+    arc.chain.push_back(closed ? vertex(x, y) : end_vertex(x, y, dir));
     const int first_x = x, first_y = y, first_dir = dir;
     std::int64_t twice_area = 0;
     while (true) {
@@ -182,8 +184,8 @@ class SliceTracer {
       twice_area += static_cast<std::int64_t>(x) * kStepY[dir] - static_cast<std::int64_t>(y) * kStepX[dir];
       x += kStepX[dir];
       y += kStepY[dir];
-      arc.chain.push_back(vertex(x, y));
       const Corner kind = classify(x, y);
+      arc.chain.push_back(kind == Corner::junction ? end_vertex(x, y, (dir + 2) & 3) : vertex(x, y));
       if (kind == Corner::junction) break;
       const int next = turn(x, y, dir, kind);
       if (rules_.part && kind != Corner::pass && (!arc.chain.back().keep || joined_label(x, y, kind) == 0))
@@ -223,8 +225,7 @@ class SliceTracer {
   void draw_apart(CrackVertex& v, int arrived, int leaves) const {
     // The pixel lies between the crack it came by (opposite `arrived`) and the crack it leaves by.
     const int to_x = kStepX[leaves] - kStepX[arrived], to_y = kStepY[leaves] - kStepY[arrived];
-    const int quarter = kGridPerPixel / 4;
-    v.home = {v.x * kGridPerPixel + quarter * to_x, v.y * kGridPerPixel + quarter * to_y};
+    v.home = {v.x * kGridPerPixel + kQuarter * to_x, v.y * kGridPerPixel + kQuarter * to_y};
     if (const FairedLabels::Corner* c = v.keep ? nullptr : faired(v.x, v.y, to_y < 0 ? FairedLabels::Corner::south : FairedLabels::Corner::north)) {
       v.position = displaced(*c);
     } else {
@@ -241,24 +242,79 @@ class SliceTracer {
 
   GridPoint displaced(const FairedLabels::Corner& c) const {
     const auto units = [&](float d) {
-      constexpr float most = 0.499F;
-      return static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * kGridPerPixel));
+      constexpr float most = 0.498F;
+      return 2 * static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * (kGridPerPixel / 2)));  // even: edges have a middle
     };
     return {c.x * kGridPerPixel + units(c.dx), c.y * kGridPerPixel + units(c.dy)};
   }
 
   CrackVertex vertex(int x, int y) const {
-    const bool keep =
-        !rules_.keep.empty() && std::binary_search(rules_.keep.begin(), rules_.keep.end(), corner_key(x, y));
-    const GridPoint home = {x * kGridPerPixel, y * kGridPerPixel};
-    const FairedLabels::Corner* c = keep ? nullptr : faired(x, y, FairedLabels::Corner::whole);
-    return {x, y, c != nullptr ? displaced(*c) : home, keep, home};
+    GridPoint home = {x * kGridPerPixel, y * kGridPerPixel};
+    if (const unsigned quadrants = touching(x, y); quadrants != 0) {
+      int to_x = 0, to_y = 0;  // into the pixels that touch; not where a label that touches would grow
+      std::uint16_t label = 0;
+      bool one = true;
+      for (int q = 0; q < 4; ++q)
+        if (quadrants >> q & 1) {
+          const std::uint16_t at = slice_.at(x - 1 + q % 2, y - 1 + q / 2);
+          one = one && (label == 0 || label == at);
+          label = at;
+          to_x += q & 1 ? 1 : -1, to_y += q & 2 ? 1 : -1;
+        }
+      if (one) home = {home.x + kQuarter * std::clamp(to_x, -1, 1), home.y + kQuarter * std::clamp(to_y, -1, 1)};
+      return {x, y, home, true, home};
+    }
+    const FairedLabels::Corner* c = faired(x, y, FairedLabels::Corner::whole);
+    return {x, y, c != nullptr ? displaced(*c) : home, false, home};
+  }
+
+  /// The quadrants of a corner that touch another component of their label (TouchingCorner).
+  unsigned touching(int x, int y) const {
+    if (rules_.keep.empty()) return 0;
+    const TouchingCorner asked{corner_key(x, y), 0};
+    const auto at = std::lower_bound(rules_.keep.begin(), rules_.keep.end(), asked);
+    return at != rules_.keep.end() && at->key == asked.key ? at->quadrants : 0;
+  }
+
+  /// Which diagonal of a junction is of one label that touches itself there, while the two other labels differ.
+  JoinedDiagonal parted_diagonal(int x, int y) const {
+    if (!rules_.part || degree(x, y) != 4) return JoinedDiagonal::none;
+    const bool rising = slice_.at(x - 1, y - 1) == slice_.at(x, y), falling = slice_.at(x - 1, y) == slice_.at(x, y - 1);
+    if (rising == falling) return JoinedDiagonal::none;
+    if ((touching(x, y) & (rising ? 2 | 4 : 1 | 8)) != 0) return JoinedDiagonal::none;  // the two others grow
+    return rising ? JoinedDiagonal::rising : JoinedDiagonal::falling;
+  }
+
+  /// The vertex at which an arc ends whose crack leads from a junction in direction dir. A label that touches itself there is parted: a
+  /// junction on either side of the corner.
+  CrackVertex end_vertex(int x, int y, int dir) const {
+    CrackVertex v = vertex(x, y);
+    const JoinedDiagonal parted = parted_diagonal(x, y);
+    if (parted == JoinedDiagonal::none) return v;
+    const bool rising = parted == JoinedDiagonal::rising, high = dir == 0 || dir == (rising ? 1 : 3);
+    const GridPoint off = {high ? kQuarter : -kQuarter, high == rising ? kQuarter : -kQuarter}, corner = {x * kGridPerPixel, y * kGridPerPixel};
+    const auto within = [](std::int32_t d) { return std::clamp(d, -kQuarter / 2, kQuarter / 2); };  // apart, and off the pixels' centres
+    v.home = {corner.x + off.x, corner.y + off.y};
+    v.position = v.keep ? v.home : GridPoint{v.home.x + within(v.position.x - corner.x), v.home.y + within(v.position.y - corner.y)};
+    return v;
+  }
+
+  /// The contour between the two junctions of such a corner.
+  void part(int x, int y) {
+    const JoinedDiagonal parted = parted_diagonal(x, y);
+    if (parted == JoinedDiagonal::none) return;
+    Arc arc;  // from the junction on the low side of x to that on the high one
+    arc.left = parted == JoinedDiagonal::rising ? slice_.at(x - 1, y) : slice_.at(x, y);
+    arc.right = parted == JoinedDiagonal::rising ? slice_.at(x, y - 1) : slice_.at(x - 1, y - 1);
+    arc.chain = {end_vertex(x, y, 2), end_vertex(x, y, 0)};
+    out_.arcs.push_back(std::move(arc));
   }
 
   /// All arcs: first from junction to junction, then the closed loops.
   void link() {
     for_each_corner([&](int x, int y) {
       if (classify(x, y) != Corner::junction) return;
+      part(x, y);
       for (int dir = 0; dir < 4; ++dir)
         if (crack(x, y, dir).exists() && !crack(x, y, dir).used()) walk(x, y, dir, false);
     });

@@ -29,6 +29,7 @@ constexpr std::size_t kSamples = 20000;   // of the stitched surface, to tell it
 constexpr double kSmoothingCost = 0.031;  // pixels of mean distance for which the steps of single voxels go
 constexpr double kSheetGap = 0.2;         // of the edge length: what sheets keep apart in the end, where small moves allow it
 constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
+constexpr double kSettled = 0.01;         // pixels: vertices that near the faired surface stay where they are
 constexpr double kDrawnCorner_deg = 35;
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
@@ -188,6 +189,9 @@ class Enhancement {
         }
       }
     });
+    const double least = kSettled * std::min(o_.pixel_mm, o_.gap_mm);
+    for (std::size_t v = 0; v < to.size(); ++v)
+      if (norm(to[v] - mesh.points[v]) < least) to[v] = mesh.points[v];
     MoveLimits keep;
     keep.clearance_mm = 0.02 * std::min(o_.pixel_mm, o_.gap_mm);
     keep.sheet_angle_deg = o_.sheet_angle_deg;

@@ -112,15 +112,16 @@ double Guard::narrowest_before(const Change& c) const {
   return cosine;
 }
 
-double Guard::nearest_before(const Change& c, const std::array<std::int32_t, 3>& w) const {
+bool Guard::was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, double squared) const {
   const Corners3 t = corners(w, nullptr);
-  double best = std::numeric_limits<double>::infinity();
+  const double gap = (1 + 1e-6) * std::sqrt(squared);  // often they are exactly as near
+  for (std::int32_t r : *c.removed)
+    if (shared_corners(mesh_.triangles[r].v, w).count > 0) return true;
   for (std::int32_t r : *c.removed) {
-    const auto& v = mesh_.triangles[r].v;
-    if (shared_corners(v, w).count > 0) return 0;
-    best = std::min(best, squared_distance(corners(v, nullptr), t));
+    const Corners3 s = corners(mesh_.triangles[r].v, nullptr);
+    if (!certainly_apart(s, t, gap) && squared_distance(s, t) <= squared) return true;
   }
-  return best;
+  return false;
 }
 
 bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
@@ -131,7 +132,7 @@ bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s
     if (certainly_apart(s, t, c.clearance_mm)) return true;
     if (triangles_meet(s, t, h)) return ++refused_contact, false;
     const double d = squared_distance(s, t), floor = 1e-9 * c.clearance_mm;
-    if (d > c.clearance_mm * c.clearance_mm || (d > floor * floor && d >= nearest_before(c, w))) return true;
+    if (d > c.clearance_mm * c.clearance_mm || (d > floor * floor && was_as_near(c, w, d))) return true;
     return ++refused_clearance, false;
   }
   if (h.count == 2) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "enhance/complex_mesh.h"
-#include "enhance/contact.h"
+#include "model/triangle_contact.h"
 
 namespace stackmesh {
 
@@ -106,7 +106,7 @@ class Guard {
   bool pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
                     const std::array<std::int32_t, 3>& w, const Change& c);
   double narrowest_before(const Change& c) const;
-  double nearest_before(const Change& c, const std::array<std::int32_t, 3>& w) const;
+  bool was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, double squared) const;
 
   ComplexMesh& mesh_;
   TriangleGrid grid_;

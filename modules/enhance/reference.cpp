@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "base/parallel.h"
-#include "enhance/contact.h"
+#include "model/triangle_contact.h"
 
 namespace stackmesh {
 

@@ -365,9 +365,10 @@ void shorten_where_off(const ComplexMesh& mesh, std::vector<double>& size, const
   std::vector<float> factor(mesh.triangles.size(), 1);
   std::vector<std::pair<std::int32_t, float>> off(reference.face_count(), {-1, 1.0f});
   constexpr std::size_t kChunk = 512;
+  const std::size_t step = off.size() > 4 * mesh.triangles.size() ? 4 : off.size() > 2 * mesh.triangles.size() ? 2 : 1;  // enough of them
   parallel_for((off.size() + kChunk - 1) / kChunk, o.threads, [&](std::size_t chunk) {
     std::int32_t hint = -1;
-    for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); ++f) {
+    for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); f += step) {
       const auto foot = now.nearest(reference.centre(f), reference.patch(f), longest, hint, o.deviation_mm);
       if (foot) hint = foot->face;
       if (foot && foot->distance_mm > o.deviation_mm)

@@ -335,6 +335,7 @@ class MeshRun {
     if (result.status == FillResult::Status::verified) {
       report_.closure = "verified";
       mesh_ = std::move(result.mesh);
+      follow_moved(result.moved_points);
       if (o_.order == 2) raise();
       if (o_.refine > 0) refine();
     } else {
@@ -344,6 +345,17 @@ class MeshRun {
       if (result.status == FillResult::Status::crashed) mend_ = "free some memory, or mesh fewer labels at once";
       offending_ = std::move(result.offending_triangles);
     }
+  }
+
+  /// The surface has its points where the tets have them, and is checked again.
+  void follow_moved(const std::vector<std::int32_t>& moved) {
+    if (moved.empty()) return;
+    std::map<std::array<double, 3>, Vec3> to;  // points of the surface at one place are one for the tets
+    for (const std::int32_t v : moved) to[{surface_.points[v].x, surface_.points[v].y, surface_.points[v].z}] = mesh_->points[v];
+    for (Vec3& p : surface_.points)
+      if (const auto at = to.find({p.x, p.y, p.z}); at != to.end()) p = at->second;
+    take(judge(surface_, o_.threads));
+    if (!is_sound()) fail_internal("the surface was sound until its worst tetrahedra were improved", "volume");
   }
 
   void refuse_too_many(double tets) const {

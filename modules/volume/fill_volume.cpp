@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "volume/compact.h"
 #include "volume/improve_tets.h"
+#include "volume/relax_surface.h"
 #include "volume/label_tets.h"
 #include "volume/worker_process.h"
 #include "volume/worker_protocol.h"
@@ -51,6 +52,9 @@ void check_input(const InterfaceComplex& complex, const FillOptions& options) {
     fail_internal("the worker call reached fill_volume(): main() must hand it to tetgen_worker_main()",
                   "fill_volume");
 }
+
+/// For tets with dihedral angles below it, points of the surface may move.
+constexpr double kRelaxDeg = 20;
 
 /// Labels that are filled together, on their own.
 struct Group {
@@ -390,6 +394,7 @@ class Filler {
 
   /// Improves the tets and compares each label's volume with that of its surface.
   FillResult assemble(TetMesh mesh, const std::string& name) const {
+    FillResult result;
     std::string improved;
     if (options_.improve_deg) {
       const std::size_t before = mesh.tets.size();
@@ -399,6 +404,7 @@ class Filler {
       improve.threads = options_.threads;
       improve.deadline = deadline_;
       volume::improve_tets(mesh, complex_.points.size(), improve, counts);
+      result.moved_points = volume::relax_surface(mesh, complex_.points.size(), std::min(improve.goal_deg, kRelaxDeg));
       const volume::Finding finding = volume::check_filled(mesh, options_.threads);
       if (!finding.message.empty()) fail_internal("the improved tets are invalid: " + finding.message, name);
       improved = ", improved from " + std::to_string(before);
@@ -423,7 +429,6 @@ class Filler {
       if (larger > 0) worst = std::max(worst, off / larger);
     }
 
-    FillResult result;
     result.status = Status::verified;
     const std::size_t added = mesh.points.size() - complex_.points.size();
     result.message = name + ": " + std::to_string(mesh.tets.size()) + " tetrahedra" + improved + ", " +

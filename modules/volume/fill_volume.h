@@ -46,14 +46,15 @@ struct FillResult {
   std::string message;   ///< one line: what filled it, or why nothing did
   std::string fallback;  ///< one line: what was tried before in vain; empty when the first attempt succeeded
   std::vector<std::string> warnings;  ///< a worker that was killed from outside and started again
-  TetMesh mesh;         ///< the complex's points come first, bit-identical; points added inside follow
+  TetMesh mesh;         ///< the complex's points come first, bit-identical but for `moved_points`; points added inside follow
+  std::vector<std::int32_t> moved_points;  ///< points of the complex that improving the tets moved a little (improve_deg; relax_surface.h), ascending
   std::vector<std::int32_t>
       offending_triangles;  ///< indices into complex.triangles, ascending: where it was refused
 };
 
 /// Fills every label of a closed complex with tetrahedra that keep all of its triangles; the background is
 /// left out. TetGen (Si 2015) does it in a worker process with a timeout, boundary preserved (-pY). What
-/// comes back is improved if that is asked for, and not believed: each tet's label is flooded from the facets' (below, above), and the volumes
+/// comes back is improved if that is asked for, and then checked: each tet's label is flooded from the facets' (below, above), and the volumes
 /// per label compared.
 ///
 /// A refinement that fails falls back to plain filling, and a refusal is tried again with smaller tolerances

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volume/best_place.h"
 #include "volume/label_tets.h"
 #include "volume/tet_quality.h"
 
@@ -24,22 +25,6 @@ Corners first(const Corners& v, int slot) {
   }
 }
 
-/// The point nearest to the origin of the convex hull of `points` (Gilbert's method): a way along which all of the
-/// functions grow that these are the gradients of.
-Vec3 nearest_to_origin(const std::vector<Vec3>& points) {
-  Vec3 x = points.front();
-  for (int i = 0; i < 30; ++i) {
-    const Vec3* least = &points.front();
-    for (const Vec3& p : points)
-      if (dot(p, x) < dot(*least, x)) least = &p;
-    const double gap = dot(x, x) - dot(*least, x);
-    if (gap <= 1e-3 * dot(x, x)) break;
-    const Vec3 d = *least - x;
-    x = x + std::min(1.0, gap / dot(d, d)) * d;
-  }
-  return x;
-}
-
 }  // namespace
 
 double ImproveMoves::worst_of(const std::vector<std::int32_t>& tets) const {
@@ -48,52 +33,10 @@ double ImproveMoves::worst_of(const std::vector<std::int32_t>& tets) const {
   return worst;
 }
 
-/// The worst tet of a fan whose point is at p; not looked for further once below `stop`.
-double ImproveMoves::fan_quality(const std::vector<Corners>& fan, const Vec3& p, double stop) const {
-  double worst = 2;
-  for (const Corners& v : fan) {
-    worst = std::min(worst, tet_quality(p, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]));
-    if (worst <= stop) return worst;
-  }
-  return worst;
-}
-
-Vec3 ImproveMoves::gradient(const Corners& v, const Vec3& p, double h) const {
-  const auto at = [&](double x, double y, double z) {
-    return tet_quality({p.x + x, p.y + y, p.z + z}, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]);
-  };
-  return {(at(h, 0, 0) - at(-h, 0, 0)) / (2 * h), (at(0, h, 0) - at(0, -h, 0)) / (2 * h), (at(0, 0, h) - at(0, 0, -h)) / (2 * h)};
-}
-
-/// Climbs from p along the common gradient of the worst tets (freitag1997). `quality` is that of the fan at p, and then
-/// of the place returned.
-Vec3 ImproveMoves::best_place(const std::vector<Corners>& fan, Vec3 p, double& quality, double enough) {
-  double size = 1e300;
-  for (const Corners& v : fan)
-    for (int i = 1; i < 4; ++i) size = std::min(size, norm(m_.points[v[i]] - p));
-  double reach = 0.3 * size;
-  for (int round = 0; round < 12 && quality < enough && reach > 1e-3 * size; ++round) {
-    gradients_.clear();
-    const double close = quality + std::max(0.02, 0.1 * std::abs(quality));
-    for (const Corners& v : fan)
-      if (tet_quality(p, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]) < close) gradients_.push_back(gradient(v, p, 1e-5 * size));
-    if (gradients_.empty()) break;
-    const Vec3 way = nearest_to_origin(gradients_);
-    const double steep = norm(way);
-    if (steep * size < 1e-4) break;
-    bool moved = false;
-    for (int half = 0; half < 5; ++half, reach /= 2) {
-      const Vec3 to = p + (reach / steep) * way;
-      const double q = fan_quality(fan, to, quality);
-      if (q <= quality + 1e-2 * kGain) continue;
-      p = to, quality = q;
-      moved = true;
-      break;
-    }
-    if (!moved) break;
-    reach *= 1.5;
-  }
-  return p;
+const std::vector<FanTet>& ImproveMoves::places_of_fan() {
+  places_.clear();
+  for (const Corners& v : fan_) places_.push_back({m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]});
+  return places_;
 }
 
 bool ImproveMoves::smooth(std::int32_t vertex, double enough) {
@@ -104,7 +47,7 @@ bool ImproveMoves::smooth(std::int32_t vertex, double enough) {
   for (const std::int32_t t : around_) fan_.push_back(first(m_.tets[t].v, m_.tets[t].slot(vertex)));
   const double before = worst_of(around_);
   double after = before;
-  const Vec3 from = m_.points[vertex], to = best_place(fan_, from, after, enough);
+  const Vec3 from = m_.points[vertex], to = best_place(places_of_fan(), from, after, enough);
   if (after <= before + kGain * std::abs(before)) return false;
   for (const Corners& v : fan_)
     if (orientation(to, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]) <= 0) return false;
@@ -249,7 +192,7 @@ bool ImproveMoves::try_insert(Vec3 p, double enough) {
     fan_.push_back(s.v);
   }
   if (q <= -0.5) return false;
-  p = best_place(fan_, p, q, enough);
+  p = best_place(places_of_fan(), p, q, enough);
   if (q <= std::min(floor_, old_worst * (1 + 10 * kGain) + 1e-3)) return false;
   const std::int32_t fresh_point = m_.add_point(p);
   fresh_.clear();

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "volume/best_place.h"
 #include "volume/improve_mesh.h"
 
 namespace stackmesh::volume {
@@ -30,9 +31,7 @@ class ImproveMoves {
  private:
   // A fan is the tets of one point, their corner 0.
   double worst_of(const std::vector<std::int32_t>& tets) const;
-  double fan_quality(const std::vector<ImproveMesh::Corners>& fan, const Vec3& p, double stop) const;
-  Vec3 best_place(const std::vector<ImproveMesh::Corners>& fan, Vec3 p, double& quality, double enough);
-  Vec3 gradient(const ImproveMesh::Corners& tet, const Vec3& p, double h) const;
+  const std::vector<FanTet>& places_of_fan();
   /// From `cavity_`, which is grown.
   bool try_insert(Vec3 p, double enough);
   Vec3 centre_of_cavity() const;
@@ -41,7 +40,7 @@ class ImproveMoves {
   double floor_ = 2;
   std::vector<std::int32_t> around_, ring_, cavity_;
   std::vector<ImproveMesh::Corners> fresh_, fan_;
-  std::vector<Vec3> gradients_;
+  std::vector<FanTet> places_;
 };
 
 }  // namespace stackmesh::volume

@@ -17,6 +17,9 @@ constexpr double kRadians = 3.14159265358979323846 / 180;
 
 /// Tets below it are worked on longer.
 constexpr double kWorstDeg = 14;
+constexpr int kSearchRounds = 4;
+constexpr int kMostTries = 60;  // of the search, for each place
+constexpr std::size_t kAllTries = 2000;
 
 class Improver {
  public:
@@ -173,9 +176,13 @@ void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options
       if (p >= 0) p %= static_cast<std::int32_t>(pieces);
     change(along, pieces, improve);
   }
-  const std::vector<std::int32_t> worst = grow(mesh, points_below(kWorstDeg, [](const auto&) { return true; }), 3, &count);
-  const int tries = count == 0 ? 0 : std::min(60, static_cast<int>(2000 / count));
-  if (tries > 0) change(worst, count, [&](ImproveMesh& work, ImproveCounts& done) { search(work, options, tries, done); });
+  // The fewer are left, the longer each is searched for.
+  for (int round = 0; round < kSearchRounds; ++round) {
+    const std::vector<std::int32_t> worst = grow(mesh, points_below(kWorstDeg, [](const auto&) { return true; }), 3, &count);
+    const int tries = count == 0 ? 0 : std::min(kMostTries, static_cast<int>(kAllTries / count));
+    if (tries == 0) break;
+    change(worst, count, [&](ImproveMesh& work, ImproveCounts& done) { search(work, options, tries, done); });
+  }
 }
 
 }  // namespace stackmesh::volume

@@ -98,10 +98,19 @@ TEST(VoxelComponents, TouchingCornersAreThoseSharedByTwoComponentsOfALabel) {
                 if (v.voxels[i] != 0 && v.voxels[i] == v.voxels[j] && component[i] != component[j])
                   expected.insert(corner_key(cx, cy));
               }
-        std::vector<std::uint64_t> found;
+        std::vector<TouchingCorner> found;
         touching_corners(components, slices[k], k, slices[other], other, found);
-        ASSERT_EQ(std::set<std::uint64_t>(found.begin(), found.end()), expected)
-            << "seed " << seed << " slice " << k;
+        unite(found);
+        std::set<std::uint64_t> keys;
+        for (const TouchingCorner& c : found) {
+          keys.insert(c.key);
+          // The pixels that touch are of this slice and of the label that touches.
+          ASSERT_NE(c.quadrants, 0);
+          const int cx = static_cast<int>(c.key & 0xffffffffu), cy = static_cast<int>(c.key >> 32);
+          for (int q = 0; q < 4; ++q)
+            if (c.quadrants >> q & 1) ASSERT_NE(slices[k].at(cx - 1 + q % 2, cy - 1 + q / 2), 0);
+        }
+        ASSERT_EQ(keys, expected) << "seed " << seed << " slice " << k;
         corners += expected.size();
       }
   }

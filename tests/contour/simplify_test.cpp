@@ -121,15 +121,15 @@ TEST(SimplifyArcs, AnArcFromAJunctionBackToItIsALoop) {
   for (double tolerance : kTolerances_px) EXPECT_EQ(edges_of(traced, tolerance).size(), 12U);  // three boxes
 }
 
-TEST(SimplifyArcs, AKeptVertexStays) {
+TEST(SimplifyArcs, ATouchingCornerIsDrawnBackAndKept) {
   const Slice box = slice_of(50, 50, [](int x, int y) { return x > 10 && x < 40 && y > 20 && y < 30; });
   CornerRules rules;
   rules.part = true;
-  rules.keep = {corner_key(25, 21), corner_key(40, 25)};
+  rules.keep = {{corner_key(25, 21), 8 | 4}, {corner_key(40, 25), 1}};  // by the pixels above it; by the one to its lower left
   const SliceArcs traced = trace_arcs(box, rules);
   const std::vector<Edge> edges = edges_of(traced, 2);
   EXPECT_EQ(edges.size(), 6U);
-  for (GridPoint p : {GridPoint{25 * 1024, 21 * 1024}, GridPoint{40 * 1024, 25 * 1024}})
+  for (GridPoint p : {GridPoint{25 * 1024, 21 * 1024 + 256}, GridPoint{40 * 1024 - 256, 25 * 1024 - 256}})
     EXPECT_EQ(std::count_if(edges.begin(), edges.end(), [&](const Edge& e) { return e.a == p; }), 1);
 }
 

@@ -1,4 +1,4 @@
-#include "enhance/contact.h"
+#include "model/triangle_contact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
