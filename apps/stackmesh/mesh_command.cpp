@@ -17,7 +17,7 @@ struct EnhanceArguments {
   double deviation = 0, edge_min = 0, edge_max = 0, gradation = 1.3;
   int smooth = 5;
   bool raw = false;
-  long target_tets = 1000000;
+  long target_tets = 0;
   bool off = false;
 };
 
@@ -67,7 +67,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_flag("--no-enhance", e.off, "the stitched surface as it is");
   if (target == Target::surface) command.add_flag("--raw", e.raw, "the stitched surface of the pixels' own outlines, without fairing and enhancement");
   const std::vector<CLI::Option*> of_volumes = {
-      command.add_option("--target-tets", e.target_tets, "coarsens an unasked-for default that would pass it")->check(CLI::Range(1L, 1000000000L))->capture_default_str(),
+      command.add_option("--target-tets", e.target_tets, "about as many tetrahedra as the sizes by curvature are scaled for (default: at most 150,000, and 50,000 for each further label)")->check(CLI::Range(1L, 1000000000L)),
       command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3; per label 5=2.0,9=1.0"),
       command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
       command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
@@ -143,9 +143,11 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   // The budget is for sizes that nobody asked for, or for whoever asks for it.
   const bool budget_asked = command.get_option("--target-tets")->count() > 0;
   const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
-  if (budget_asked || !sizes_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
+  if (budget_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
+  o.enhancement.usual_target = !budget_asked && !sizes_asked;
   if (budget_asked && (!e.edge_length.empty() || !o.enhance))
-    o.notes.push_back(std::string("--target-tets has no effect beside ") + (!o.enhance ? "--no-enhance" : "--edge-length") + ": the size is what that asks for");
+    fail_usage(std::string("--target-tets has no effect beside ") + (!o.enhance ? "--no-enhance or --raw" : "--edge-length"), "--target-tets " + std::to_string(e.target_tets),
+               "leave one of them out");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
@@ -164,7 +166,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},
                     {"edge_max_mm", e.edge_max > 0 ? text_of(e.edge_max) : "default"},
                     {"gradation", text_of(e.gradation)},
-                    {"target_tets", budget_asked || !sizes_asked ? std::to_string(e.target_tets) : "unset"},
+                    {"target_tets", budget_asked ? std::to_string(e.target_tets) : sizes_asked ? "unset" : "default"},
                     {"space", a.space},
                     {"threads", a.contours.threads > 0 ? std::to_string(a.contours.threads) : "all"},
                     {"strict", a.strict ? "on" : "off"}};

@@ -19,6 +19,8 @@ namespace {
 
 constexpr double kTriangleLimit = 50e6;
 // Measured: 1.9 tetrahedra a triangle in a thin skull, 3 to 4 in a heart, 9.5 in lungs with fine triangles.
+// Without any size asked for: tetrahedra of one label, for each further one, and at most.
+constexpr std::size_t kUsualTets = 150000, kMoreTets = 50000, kMostTets = 1000000;
 constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
 // The edges that come out scatter about 0.95 of what the remesher aims at.
 constexpr double kAim = 1.05;
@@ -233,7 +235,7 @@ class Enhancement {
       s.label_max_mm[label] = std::max(o_.edge_max_mm.value_or(longest / 10), s.edge_min_mm);
       const auto own = o_.label_edge_mm.find(label);
       const double asked = own != o_.label_edge_mm.end() ? own->second : o_.edge_length_mm.value_or(0);
-      if (asked > longest / 2) {
+      if (asked > longest / 3) {
         s.label_edge_mm[label] = kAim * longest / 3;
         warn("label " + std::to_string(label) + ": an edge length of " + number(asked) +
              " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used");
@@ -277,8 +279,7 @@ class Enhancement {
   }
 
   /// By what the sizes have to be multiplied for as many tetrahedra as the target says.
-  double towards_target(const ComplexMesh& mesh, const std::vector<double>& size) const {
-    const double target = static_cast<double>(*o_.target_tets);
+  double towards_target(const ComplexMesh& mesh, const std::vector<double>& size, double target) const {
     const ExpectedTets tets = expected_tets(mesh, size);
     double low = 0.01, high = 100;
     for (int step = 0; step < 40; ++step) {
@@ -289,15 +290,21 @@ class Enhancement {
   }
 
   /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
+  /// Shorter ones only for a target that was asked for.
   /// @return the triangles that go with the target.
   double coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
-    const double longer = towards_target(mesh, size);
+    const std::size_t target = o_.target_tets.value_or(std::min(kMostTets, kUsualTets + kMoreTets * (volumes_.empty() ? 0 : volumes_.size() - 1)));
+    const double longer = towards_target(mesh, size, static_cast<double>(target));
     const double triangles = expected_triangles(mesh, size) / (longer * longer);
+    if (o_.target_tets && longer < 0.98) {
+      result_.coarsened = longer;
+      for (double& x : size) x *= longer;
+    }
     if (longer > 1.02) {
       result_.coarsened = longer;
       for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], 0.5 * shell_[v]));
       warn("edges were made " + number(longer) + " times longer than the default, for a target of " +
-           std::to_string(*o_.target_tets) + " tetrahedra");
+           std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones");
     }
     return triangles;
   }
@@ -314,7 +321,7 @@ class Enhancement {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
     RemeshOptions r;
-    if (o_.target_tets && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
+    if ((o_.target_tets || o_.usual_target) && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
     result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size).at(1));
@@ -325,7 +332,7 @@ class Enhancement {
     r.threads = o_.threads;
     // An edge length that was asked for gives way only where something would be cut off.
     r.deviation_mm = o_.edge_length_mm ? std::max(0.5 * o_.pixel_mm, 0.4 * *o_.edge_length_mm) : result_.coarsened * result_.coarsened * sizes.deviation_mm;
-    r.shortest_mm = sizes.edge_min_mm;
+    r.shortest_mm = std::min(1.0, result_.coarsened) * sizes.edge_min_mm;
     r.gradation = o_.gradation;
     const RemeshCounts c = remesh(mesh, size, reference, r, progress_);
     result_.counts.splits = c.splits;

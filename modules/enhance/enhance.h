@@ -27,7 +27,9 @@ struct EnhanceOptions {
   std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels
   std::optional<double> edge_max_mm;  ///< by curvature: default a tenth of the label's box
   std::optional<std::size_t>
-      target_tets;         ///< by curvature: edges get longer until about that many tetrahedra are expected
+      target_tets;         ///< by curvature: edges get longer, or shorter, until about that many tetrahedra are expected
+  bool usual_target = false;  ///< without a target: edges get longer where more than 150,000 tetrahedra, and 50,000 for each label but one, would
+                              ///< be made (at most a million)
   double gradation = 1.3;             ///< largest ratio of neighbouring edge lengths
   double feature_deg = 70;      ///< straight chains of edges that bend by more are ridges, from 8 pixels on
   double drawn_gap_mm = 0;  ///< above 0: sections are drawn outlines that far apart, without voxel steps: corners above 35 degrees that
@@ -50,7 +52,7 @@ struct EnhanceResult {
   std::string level;         ///< "enhanced", "smoothed" or "stitched": how far it came
   EnhanceCounts counts;
   std::size_t expected_triangles = 0, expected_tets = 0;  ///< from the sizes, before remeshing
-  double coarsened = 1;  ///< by what edges were made longer for target_tets
+  double coarsened = 1;  ///< by what edges were made longer (or shorter) for the target
   std::vector<std::string> warnings;
 };
 

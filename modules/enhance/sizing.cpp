@@ -24,6 +24,50 @@ Vec3 unit(const Vec3& a) {
   return l > 0 ? (1 / l) * a : Vec3{};
 }
 
+/// Unit normals of the vertices that are on no curve, averaged over three rings; zero on curves.
+std::vector<Vec3> averaged_normals(const ComplexMesh& mesh, int threads) {
+  const std::size_t n = mesh.points.size();
+  std::vector<Vec3> normal(n), next(n);
+  for_each_index(n, threads, [&](std::int32_t v) {
+    Vec3 sum;
+    if (mesh.curve[v].empty())
+      for (std::int32_t t : mesh.star[v]) sum = sum + mesh.area_vector(mesh.triangles[t].v);
+    normal[v] = unit(sum);
+  });
+  for (int pass = 0; pass < 3; ++pass) {
+    for_each_index(n, threads, [&](std::int32_t v) {
+      next[v] = normal[v];
+      if (!mesh.curve[v].empty()) return;
+      for (std::int32_t t : mesh.star[v])
+        for (std::int32_t w : mesh.triangles[t].v)
+          if (w != v && mesh.curve[w].empty()) next[v] = next[v] + 0.5 * normal[w];
+    });
+    std::swap(normal, next);
+    for_each_index(n, threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
+  }
+  return normal;
+}
+
+/// The mean curvature at every vertex that is on no curve, 1 / mm: above 0 where the label that the normals point away from bulges. From
+/// normals averaged over a few rings.
+std::vector<double> signed_bends(const ComplexMesh& mesh, int threads) {
+  const std::vector<Vec3> normal = averaged_normals(mesh, threads);
+  std::vector<double> out(mesh.points.size(), 0);
+  for_each_index(out.size(), threads, [&](std::int32_t v) {
+    if (!mesh.curve[v].empty()) return;
+    double sum = 0, weight = 0;
+    for (std::int32_t t : mesh.star[v])
+      for (std::int32_t w : mesh.triangles[t].v) {
+        if (w == v || !mesh.curve[w].empty()) continue;
+        const Vec3 d = mesh.points[w] - mesh.points[v];
+        sum += dot(normal[w] - normal[v], d);
+        weight += dot(d, d);
+      }
+    if (weight > 0) out[v] = sum / weight;
+  });
+  return out;
+}
+
 class Sizing {
  public:
   Sizing(const ComplexMesh& mesh, const SizingOptions& options) : mesh_(mesh), o_(options) {}
@@ -86,13 +130,13 @@ class Sizing {
     if (o_.edge_length_mm) return;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       if (!fixed_[v])
-        size_[v] = std::clamp(std::min(chord(v, o_.deviation_mm), kTurnByCurvature / std::max(bend_[v], 1e-12)), std::min(o_.edge_min_mm, size_[v]), size_[v]);
+        size_[v] = std::clamp(std::min(chord(1 / std::max(bend_[v], 1e-12), o_.deviation_mm), kTurnByCurvature / std::max(bend_[v], 1e-12)), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
   }
 
-  /// Length of an edge whose middle is `deviation` off a surface that bends as it does at v.
-  double chord(std::int32_t v, double deviation) const {
-    const double r = std::min(1 / std::max(bend_[v], 1e-12), 1e12), d = std::min(deviation, r);
+  /// Length of an edge whose middle is `deviation` off a surface with that radius of curvature.
+  static double chord(double radius, double deviation) {
+    const double r = std::min(radius, 1e12), d = std::min(deviation, r);
     return 2 * std::sqrt(d * (2 * r - d));
   }
 
@@ -115,42 +159,47 @@ class Sizing {
     keep_volumes(thin);
   }
 
-  /// Chords cut off what bulges. Where a label would lose more than its share of the volume so, edges on its thin parts
-  /// get shorter until the loss that the bend predicts fits.
+  /// Chords cut off what bulges. Edges are no longer than those that would cut a share of a label's volume off, as its bend predicts, were all
+  /// of its edges as long as that allows. So the bound does not depend on the length asked for, and a longer one never makes shorter edges.
   void keep_volumes(const std::vector<double>& thin) {
     const std::size_t labels = mesh_.labels().size();
     const bool outside = !mesh_.labels().empty() && mesh_.labels()[0] == 0;  // number 0 is the outside
     const std::map<Label, double> volume = label_volumes(mesh_);
-    std::vector<double> part(labels, 1);  // of the thickness that a chord may cut off
+    const std::vector<double> turns = signed_bends(mesh_, o_.threads);  // what bulges and dents in turn keeps the volume
     std::vector<double> area(mesh_.triangles.size(), 0), radius(size_.size());
     for_each_index(area.size(), o_.threads, [&](std::size_t t) { area[t] = norm(mesh_.area_vector(mesh_.triangles[t].v)); });
-    for_each_index(radius.size(), o_.threads, [&](std::size_t v) { radius[v] = std::min(1 / std::max(bend_[v], 1e-12), 1e12); });
-    for (int pass = 0; pass < 6; ++pass) {
+    for_each_index(radius.size(), o_.threads, [&](std::size_t v) { radius[v] = std::min(1 / std::max(std::abs(turns[v]), 1e-12), 1e12); });
+    // Of the thickness that a chord may cut off: the largest part, by bisection for each label.
+    std::vector<double> low(labels, 0.6 * 0.6 * 0.6 * 0.6 * 0.6 * 0.6), high(labels, 1), part(labels, 1);
+    for (int pass = 0; pass < 8; ++pass) {
       std::vector<double> loss(labels, 0);
       for (std::size_t t = 0; t < area.size(); ++t) {
         if (mesh_.triangles[t].patch < 0) continue;
-        for (std::int32_t l : mesh_.sides(mesh_.triangles[t].patch))
-          if (!(l == 0 && outside))
-            for (std::int32_t v : mesh_.triangles[t].v) {
-              const double r = radius[v], reach = std::min(thin[v], 2 * r);
-              const double size = std::min(size_[v], chord(v, part[l] * reach));
-              loss[l] += area[t] / 3 * std::min(size * size / (8 * r), 0.5 * reach);
-            }
-      }
-      bool any = false;
-      for (std::size_t l = outside; l < labels; ++l)
-        if (loss[l] > kLossShare * volume.at(mesh_.labels()[l])) {
-          part[l] *= 0.6;
-          any = true;
+        for (const int side : {0, 1}) {
+          const std::int32_t l = mesh_.sides(mesh_.triangles[t].patch)[side];
+          if (l == 0 && outside) continue;
+          for (std::int32_t v : mesh_.triangles[t].v) {
+            const double r = radius[v], reach = std::min(thin[v], 2 * r), size = chord(r, part[l] * reach);
+            const double cut = area[t] / 3 * std::min(size * size / (8 * r), 0.5 * reach);
+            loss[l] += (turns[v] > 0) == (side == 0) ? cut : -cut;
+          }
         }
-      if (!any) break;
+      }
+      for (std::size_t l = outside; l < labels; ++l) {
+        const bool fits = loss[l] <= kLossShare * volume.at(mesh_.labels()[l]);
+        (fits ? low : high)[l] = part[l];
+        if (pass == 0 && fits) high[l] = 1;
+        part[l] = std::sqrt(low[l] * high[l]);
+      }
     }
+    part = low;
+    if (outside) part[0] = 1;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       double least = 1;
       for (std::int32_t t : mesh_.star[v])
         for (std::int32_t l : mesh_.sides(mesh_.triangles[t].patch)) least = std::min(least, part[l]);
       if (least < 1)
-        size_[v] = std::clamp(chord(v, least * std::min(thin[v], 2 * radius[v])), std::min(o_.edge_min_mm, size_[v]), size_[v]);
+        size_[v] = std::clamp(chord(radius[v], least * std::min(thin[v], 2 * radius[v])), std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
   }
 
@@ -281,28 +330,8 @@ void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>&
 
 std::vector<double> surface_bends(const ComplexMesh& mesh, int threads) {
   const std::size_t n = mesh.points.size();
-  std::vector<Vec3> normal(n), next(n);
+  const std::vector<Vec3> normal = averaged_normals(mesh, threads);
   std::vector<double> bend(n, 0), smooth(n, 0);
-  for_each_index(n, threads, [&](std::int32_t v) {
-    Vec3 sum;
-    if (mesh.curve[v].empty())
-      for (std::int32_t t : mesh.star[v]) sum = sum + mesh.area_vector(mesh.triangles[t].v);
-    normal[v] = unit(sum);
-  });
-  const auto averaged = [&](auto& from, auto& to, auto share) {
-    for_each_index(n, threads, [&](std::int32_t v) {
-      to[v] = from[v];
-      if (!mesh.curve[v].empty()) return;
-      for (std::int32_t t : mesh.star[v])
-        for (std::int32_t w : mesh.triangles[t].v)
-          if (w != v && mesh.curve[w].empty()) to[v] = to[v] + share * from[w];
-    });
-    std::swap(from, to);
-  };
-  for (int pass = 0; pass < 3; ++pass) {
-    averaged(normal, next, 0.5);
-    for_each_index(n, threads, [&](std::int32_t v) { normal[v] = unit(normal[v]); });
-  }
   for_each_index(n, threads, [&](std::int32_t v) {
     if (!mesh.curve[v].empty()) {
       if (mesh.curve[v].size() != 2) return;
