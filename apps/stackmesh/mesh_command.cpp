@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "commands.h"
+#include "meshio/write_mesh.h"
 #include "options.h"
 #include "slicer_module.h"
 #include "pipeline/mesh_run.h"
@@ -42,8 +43,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   const CLI::Validator positive = number_in(1e-12, 1e12, "a number above 0");
   a.input.add_to(command, true);
   command.add_option("-o,--output", a.outputs,
-                     target == Target::volume ? "output: .vtu .msh .inp .feb .bdf .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
-                                              : "output: .stl .ply .obj .off .vtp; repeatable")
+                     "output: " + (target == Target::volume ? volume_endings() + ", and surfaces " : std::string()) + surface_endings() + "; repeatable")
       ->required()->allow_extra_args(false);
   command.add_option("--report", a.reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
   command.add_option("--names", a.names, "FILE.json: written, the labels' numbers, names and colours; any other: read, a Slicer colour table or an ITK-SNAP label description")

@@ -116,7 +116,7 @@ class FemRun {
   void check_outputs() const {
     for (const std::string& path : o_.mesh.outputs)
       if (!is_volume_format(path))
-        fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose .inp .feb .bdf .msh .vtu .vtk");
+        fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose " + volume_endings());
     check_report_names(o_.mesh.reports);
     if (o_.mesh.space != "lps" && o_.mesh.space != "ras") fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
   }

@@ -70,13 +70,12 @@ class MeshRun {
       const bool surface = is_surface_format(path), volume = is_volume_format(path);
       if (!surface && !(volume && o_.target == Target::volume))
         fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
-                   o_.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
-                                               : "choose .stl .ply .obj .off .vtp");
+                   o_.target == Target::volume ? "choose " + volume_endings() + ", or for the surface " + surface_endings() : "choose " + surface_endings());
     }
     if (o_.order == 2)
       for (const std::string& path : o_.outputs)
         if (ends_with(path, ".mesh"))
-          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
+          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose another one of " + volume_endings());
     check_report_names(o_.reports);
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
     std::vector<std::string> all = o_.outputs, inputs = o_.input.paths;
