@@ -75,7 +75,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--refine", a.refine, "how often every tetrahedron is cut into eight at the end: the same surface and order, edges half as long")->check(CLI::Range(0, 4))->capture_default_str(),
       command.add_flag("--yes", a.yes, "go on when more than 10 million tetrahedra are estimated"),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
-      command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
+      command.add_option("--timeout", a.timeout_s, "for the volume mesher, and for each run of CalculiX with --accuracy, s")->check(positive)->capture_default_str()};
   if (target == Target::surface)
     for (CLI::Option* option : of_volumes) option->group("");  // accepted without effect, so that both commands take the same line
   command.add_option("--return-parameters", a.return_parameters)->group("");
