@@ -145,7 +145,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
   if (budget_asked || !sizes_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
   if (budget_asked && (!e.edge_length.empty() || !o.enhance))
-    o.notes.push_back(std::string("--target-tets has no effect beside ") + (!o.enhance ? "--no-enhance" : "--edge-length") + ": the size is what that asks for");
+    fail_usage(std::string("--target-tets and ") + (!o.enhance ? "--no-enhance" : "--edge-length") + " both say how many elements there are", "command line", "give one of them");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
