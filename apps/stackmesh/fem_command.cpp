@@ -15,7 +15,7 @@ struct FemArguments {
   std::string image, materials, label_array;
   std::string contact = "tie";
   std::vector<std::string> parts, skins, selections;
-  std::string accuracy;
+  std::string accuracy, result;
   int erode_px = 0;
   double sharp_deg = 50;
 };
@@ -46,6 +46,7 @@ void add_options(CLI::App& command, FemArguments& a) {
   command.add_option("--sharp", a.sharp_deg, "a label's outer faces are split at edges that turn by more, degrees")->check(number_in(1, 180, "a number from 1 to 180"))->capture_default_str();
   command.add_option("--accuracy", a.accuracy, "5%: CalculiX solves the load case's first static step on the mesh and on its tetrahedra cut into eight (twice at most), until stress and "
                                                "displacement of every set change by no more; the last mesh is written");
+  command.add_option("--result", a.result, "CalculiX's .frd of the deck that these very options made: the page of --report R.html shows its von Mises stress");
   command.add_option("--label-array", a.label_array, "of a given mesh: the cell array that holds its labels");
 }
 
@@ -70,6 +71,7 @@ FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRun
     if (!(percent > 0 && percent <= 50)) fail_usage("the accuracy '" + a.accuracy + "' is not above 0 and at most 50 %", "--accuracy", "write --accuracy 5%");
     o.accuracy_rel = percent / 100;
   }
+  o.result = a.result;
   o.selections = a.selections;
   o.sharp_deg = a.sharp_deg;
   o.label_array = a.label_array;

@@ -18,6 +18,7 @@
 #include "fem/selection.h"
 #include "fem/split_parts.h"
 #include "image/read_image.h"
+#include "meshio/read_frd.h"
 #include "meshio/read_mesh.h"
 #include "pipeline/output_files.h"
 #include "pipeline/complete_report.h"
@@ -98,8 +99,6 @@ class FemRun {
     clock.run("validate", [&] { check(product, report); });
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
       for (Vec3& p : product.mesh.points) p = {-p.x, -p.y, p.z};
-    HtmlPictures pictures;
-    if (asks_for_html(o_.mesh.reports)) clock.run("write", [&] { pictures = draw(product); });
     if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.threads;
@@ -111,7 +110,12 @@ class FemRun {
         fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
       clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.refine); });
     }
-    clock.run("write", [&] { model(std::move(product), report, files); });
+    const bool html = asks_for_html(o_.mesh.reports);
+    HtmlPictures pictures;
+    clock.run("write", [&] {
+      model(html ? product : std::move(product), report, files);
+      if (html) pictures = draw(product, report);
+    });
     report.peak_rss_mb = peak_memory_mb();
     for (const std::string& r : o_.mesh.reports) {
       const std::string text = is_html_report(r) ? to_html({{"mesh", &report, &pictures}}) : to_json(report);
@@ -121,11 +125,12 @@ class FemRun {
     return report;
   }
 
-  HtmlPictures draw(const MeshProduct& product) const {
+  HtmlPictures draw(const MeshProduct& product, const RunReport& report) const {
     const InterfaceComplex surface = {product.mesh.points, product.mesh.faces};
     HtmlScene scene;
     scene.surface = &surface;
     scene.mesh = &product.mesh;
+    scene.values = &report.fem->faces;
     scene.space = product.space == WorldSpace::none ? "none" : o_.mesh.space;
     HtmlOptions options;
     options.threads = o_.mesh.threads;
@@ -266,6 +271,7 @@ class FemRun {
     const SolverModel& model = built.model;
     for (const std::string& w : built.warnings) report.warnings.push_back(w);
     report.fem = summary(model, built.materials);
+    if (asks_for_html(o_.mesh.reports)) report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
     report.fem->accuracy = std::move(accuracy);
     if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back(not_reached(*report.fem->accuracy));
 
@@ -276,6 +282,25 @@ class FemRun {
       for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
       write_model(files, path, model, write);
     }
+  }
+
+  /// Von Mises stress at the model's nodes, out of a result of CalculiX for this very model.
+  std::vector<double> mises_of(const SolverModel& model) const {
+    const FrdResult result = read_frd(o_.result);
+    const auto stress = result.fields.find("STRESS");
+    if (stress == result.fields.end()) fail_input("the result has no stress", o_.result, "ask for it in the deck: *EL FILE and S, as decks with a load case do");
+    std::vector<double> mises(model.mesh.points.size(), 0);
+    for (std::size_t i = 0; i < result.numbers.size(); ++i) {
+      const std::int64_t node = result.numbers[i] - 1;
+      if (node < 0 || node >= static_cast<std::int64_t>(mises.size())) continue;  // of rigid points and springs
+      const Vec3 p = model.mesh.points[node];
+      if (norm(result.points[i] - p) > 1e-3 + 1e-4 * norm(p))
+        fail_input("the result is of another mesh: its node " + std::to_string(node + 1) + " lies elsewhere", o_.result, "give the result of this input with these very options");
+      const auto& s = stress->second[i];
+      const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+      mises[node] = std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+    }
+    return mises;
   }
 
   std::string not_reached(const FemAccuracy& a) const {

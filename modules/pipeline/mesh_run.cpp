@@ -582,6 +582,12 @@ class MeshRun {
     if (input_.volume) scene.volume = &*input_.volume;
     else scene.sections = &stack_;
     scene.stack_axis = axis_;
+    InterfaceComplex of_model;  // corners of second-order tetrahedra lie beside the surface's
+    if (report_.fem && mesh_) {
+      of_model = {mesh_->points, mesh_->faces};
+      scene.surface = &of_model;
+      scene.values = &report_.fem->faces;
+    }
     scene.space = world_ == WorldSpace::none ? "none" : world_ == WorldSpace::ras && written ? "ras" : "lps";
     HtmlOptions options;
     options.threads = o_.threads;

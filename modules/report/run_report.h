@@ -14,6 +14,7 @@
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_volume.h"
+#include "report/surface_values.h"
 #include "validate/verdict.h"
 
 namespace stackmesh {
@@ -111,6 +112,7 @@ struct FemReport {
   std::vector<FemStep> steps;
   std::vector<Body> bodies;  ///< the largest first
   std::optional<FemAccuracy> accuracy;
+  SurfaceValues faces;  ///< for the pictures alone
 };
 
 /// Everything a run reports (modules/report/README.md lists the fields of the JSON form).
