@@ -14,7 +14,7 @@ struct TriangleValues {
   std::uint8_t set = 0;      ///< 1 + its place in SurfaceValues::sets; 0: in none
   std::uint8_t acts = 0;     ///< bits: 1 held or moved, 2 loaded (in any step)
   std::uint8_t modulus = 0;  ///< 1 to 255 from the smallest to the largest modulus, by ratio; 0: unknown
-  std::uint8_t mises = 0;    ///< 1 to 255 from 0 to the largest; 0: unknown
+  std::uint8_t mises = 0;    ///< 1 to 255 from 0 to what 99.5 % of the nodes keep below; 0: unknown
 };
 
 /// By what a page colours the surface of a solver model.

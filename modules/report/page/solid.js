@@ -380,7 +380,7 @@ class SolidView {
     const colours = [0, 0.2, 0.35, 0.5, 0.65, 0.8, 1].map(t => 'rgb(' + rampColour(t).join(',') + ')').join(',');
     const m = this.mesh.p.surface.model;
     const scale = this.colour === 'modulus' ? ['Young’s modulus of the tetrahedra behind, by ratio', figure(m.modulus_low_mpa) + ' MPa', figure(m.modulus_high_mpa) + ' MPa']
-        : this.colour === 'mises' ? ['von Mises stress', '0 MPa', figure(m.mises_high_mpa) + ' MPa'] : null;
+        : this.colour === 'mises' ? ['von Mises stress', '0 MPa', figure(m.mises_high_mpa) + ' MPa and more'] : null;
     if (scale) box.replaceChildren(element('div', {text: scale[0]}), element('div', {class: 'ramp', style: ''}), element('div', {class: 'ends'}, element('span', {text: scale[1]}), element('span', {text: scale[2]})));
     else box.replaceChildren(
         element('div', {text: distance ? 'distance to the labels’ boundary' : 'smallest angle; inside: dihedral'}),
