@@ -20,6 +20,7 @@
 #include "image/read_image.h"
 #include "meshio/read_frd.h"
 #include "meshio/read_mesh.h"
+#include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
@@ -98,7 +99,7 @@ class FemRun {
     check_labels(product.labels);
     clock.run("validate", [&] { check(product, report); });
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
-      for (Vec3& p : product.mesh.points) p = {-p.x, -p.y, p.z};
+      to_ras(product.mesh.points);
     if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.threads;
@@ -162,7 +163,7 @@ class FemRun {
     product.up = o_.up;
     if (file.space && *file.space == WorldSpace::none) product.space = WorldSpace::none;
     if (file.space && *file.space == WorldSpace::ras)
-      for (Vec3& p : file.points) p = {-p.x, -p.y, p.z};
+      to_ras(file.points);  // and back again
     if (product.space == WorldSpace::none) report.input.space = "none";
     product.mesh.points = std::move(file.points);
     product.mesh.tets = std::move(file.tets);

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "pipeline/complete_report.h"
+#include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
@@ -504,14 +505,6 @@ class MeshRun {
     return w;
   }
 
-  /// LPS to RAS turns half a revolution about z: exact, and triangles keep their sense.
-  static void to_ras(std::vector<Vec3>& points) {
-    for (Vec3& p : points) {
-      p.x = -p.x;
-      p.y = -p.y;
-    }
-  }
-
   void write() {
     if (world_ == WorldSpace::ras) {
       to_ras(surface_.points);
@@ -530,37 +523,14 @@ class MeshRun {
 
   /// The mesh in the frame that will be written, for the solver model.
   void make_model() {
-    MeshProduct product;
+    TetMesh mesh;
     if (wants_html()) {
-      product.mesh = *mesh_;  // the page shows it
+      mesh = *mesh_;  // the page shows it
     } else {
-      product.mesh = std::move(*mesh_);
+      mesh = std::move(*mesh_);
       mesh_.reset();
     }
-    product.labels = input_.labels;
-    product.space = world_;
-    product.up = frame_.axes[2];
-    if (input_.volume) {
-      const LabelVolume& v = *input_.volume;
-      ImageBox box;
-      box.origin = v.world(-0.5, -0.5, -0.5);
-      box.axes = v.axes;
-      box.spacing_mm = v.spacing_mm;
-      for (int d = 0; d < 3; ++d) box.length_mm[d] = v.spacing_mm[d] * v.size[d];
-      product.image = box;
-    }
-    if (world_ == WorldSpace::ras) {
-      to_ras(product.mesh.points);
-      std::vector<Vec3> turned = {product.up};
-      if (product.image) turned.insert(turned.end(), {product.image->origin, product.image->axes[0], product.image->axes[1], product.image->axes[2]});
-      to_ras(turned);
-      product.up = turned[0];
-      if (product.image) {
-        product.image->origin = turned[1];
-        for (int d = 0; d < 3; ++d) product.image->axes[d] = turned[2 + d];
-      }
-    }
-    model_(std::move(product), report_, files_);
+    model_(make_product(std::move(mesh), input_, frame_.axes[2], world_), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
