@@ -122,6 +122,9 @@ std::vector<std::string> losses_of(const std::string& path, const SolverModel& m
   const auto any_material = [&](MaterialKind kind) {
     return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind == kind; });
   };
+  const auto any_material_but = [&](MaterialKind kind) {
+    return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind != kind; });
+  };
   const auto any_step = [&](Analysis analysis) {
     return std::any_of(sets.steps.begin(), sets.steps.end(), [&](const LoadStep& s) { return s.analysis == analysis; });
   };
@@ -141,10 +144,12 @@ std::vector<std::string> losses_of(const std::string& path, const SolverModel& m
   const bool mesh_only = format->by_name == write_exodus || writer == write_med;
   if (mesh_only && !sets.steps.empty())
     losses.push_back(path + ": the format holds no load case; supports and loads are left out, their sets are there");
+  if (mesh_only && any_material_but(MaterialKind::linear)) losses.push_back(path + ": of materials the modulus and the density are written, at small strain");
+  if (mesh_only && !sets.shells.empty()) losses.push_back(path + ": of skins the faces are written, not the thickness");
   if (mesh_only && !sets.ties.empty()) losses.push_back(path + ": the format holds no ties; the sets of nodes that follow are there");
   if (writer == write_cdb || writer == write_dyna) {
     if (sets.steps.size() > 1 || any_step(Analysis::frequency)) losses.push_back(path + ": the first static step is written, the others are left out");
-    if (std::any_of(sets.materials.begin(), sets.materials.end(), [](const ElementMaterial& m) { return m.kind != MaterialKind::linear; }))
+    if (any_material_but(MaterialKind::linear))
       losses.push_back(path + ": materials other than linear isotropic ones are written as isotropic at small strain");
     if (!sets.points.empty() || !sets.springs.empty()) losses.push_back(path + ": rigid points and springs are not written");
     if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
