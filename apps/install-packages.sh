@@ -9,12 +9,13 @@ program=(
   libopencv-dev # the small -dev packages of its parts lack OpenCVConfig.cmake
   libcgal-dev libtet1.5-dev libopenmesh-dev
   libinsighttoolkit5-dev libdcmtk-dev libtiff-dev
+  libexodusii-dev libmedc-dev # .exo and .med; Debian builds both upon Open MPI, which comes along and is not used
   libtbb-dev libcli11-dev nlohmann-json3-dev libpugixml-dev
   libjs-three libjs-chart.js # inside the HTML report
 )
 tests=(
   libgtest-dev libbenchmark-dev
-  python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-pil python3-vtk9 python3-meshio gmsh calculix-ccx
+  python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-pil python3-vtk9 python3-meshio python3-h5py gmsh calculix-ccx
   chromium chromium-driver python3-selenium # opens the HTML report
 )
 pictures=(python3-vtk9 xvfb xauth libgl1-mesa-dri)

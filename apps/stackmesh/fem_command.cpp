@@ -15,6 +15,7 @@ struct FemArguments {
   std::string image, materials, label_array;
   std::string contact = "tie";
   std::vector<std::string> parts, skins, selections;
+  std::string accuracy, result;
   int erode_px = 0;
   double sharp_deg = 50;
 };
@@ -43,6 +44,9 @@ void add_options(CLI::App& command, FemArguments& a) {
                      "normal:nx,ny,nz,degrees points:FILE.mrk.json,r of:LABEL in:SET; repeatable")
       ->allow_extra_args(false);
   command.add_option("--sharp", a.sharp_deg, "a label's outer faces are split at edges that turn by more, degrees")->check(number_in(1, 180, "a number from 1 to 180"))->capture_default_str();
+  command.add_option("--accuracy", a.accuracy, "5%: CalculiX solves the load case's first static step on the mesh and on its tetrahedra cut into eight (twice at most), until stress and "
+                                               "displacement of every set change by no more; the last mesh is written");
+  command.add_option("--result", a.result, "CalculiX's .frd of the deck that these very options made: the page of --report R.html shows its von Mises stress");
   command.add_option("--label-array", a.label_array, "of a given mesh: the cell array that holds its labels");
 }
 
@@ -62,6 +66,12 @@ FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRun
     o.skins.push_back({label, parse_number(thickness, "--skin")});
     if (o.skins.back().second <= 0) fail_usage("the thickness '" + thickness + "' is not above 0", "--skin", "write --skin 5=0.3, in mm");
   }
+  if (!a.accuracy.empty()) {
+    const double percent = parse_number(a.accuracy.back() == '%' ? a.accuracy.substr(0, a.accuracy.size() - 1) : a.accuracy, "--accuracy");
+    if (!(percent > 0 && percent <= 50)) fail_usage("the accuracy '" + a.accuracy + "' is not above 0 and at most 50 %", "--accuracy", "write --accuracy 5%");
+    o.accuracy_rel = percent / 100;
+  }
+  o.result = a.result;
   o.selections = a.selections;
   o.sharp_deg = a.sharp_deg;
   o.label_array = a.label_array;
@@ -110,6 +120,16 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
     else
       std::printf("%zu loaded nodes, force (%.5g, %.5g, %.5g) N%s%s\n", p.loaded_nodes, p.force_n.x, p.force_n.y, p.force_n.z,
                   norm(p.gravity_mm_s2) > 0 ? ", gravity" : "", p.large_displacements ? ", large displacements" : "");
+  }
+  if (f.accuracy) {
+    const Accuracy& e = f.accuracy->estimate;
+    std::printf("accuracy  %.3g %% (asked for %.3g %%), in set %s; energy error by Zienkiewicz and Zhu %.3g %%; solved with", 100 * e.error_rel, 100 * f.accuracy->asked_rel,
+                printable(e.worst_set).c_str(), 100 * e.zz_rel.back());
+    for (std::size_t i = 0; i < f.accuracy->elements.size(); ++i) std::printf("%s %zu", i > 0 ? "," : "", f.accuracy->elements[i]);
+    std::printf(" elements\n");
+    for (const SetAccuracy& s : e.sets)
+      std::printf("          %-32s von Mises %.4g MPa (mean square), off by %.2g %%; moves %.4g mm, off by %.2g %%%s\n", printable(s.set).c_str(), s.mises_rms_mpa.back(),
+                  100 * s.error_rel, s.displacement_max_mm.back(), 100 * s.displacement_error_rel, s.held ? " (held: does not count)" : "");
   }
   for (const std::string& o : outputs) std::printf("written   %s\n", printable(o).c_str());
 }

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "commands.h"
+#include "meshio/write_mesh.h"
 #include "options.h"
 #include "slicer_module.h"
 #include "pipeline/mesh_run.h"
@@ -42,8 +43,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   const CLI::Validator positive = number_in(1e-12, 1e12, "a number above 0");
   a.input.add_to(command, true);
   command.add_option("-o,--output", a.outputs,
-                     target == Target::volume ? "output: .vtu .msh .inp .feb .bdf .vtk .mesh, and surfaces .stl .ply .obj .off .vtp; repeatable"
-                                              : "output: .stl .ply .obj .off .vtp; repeatable")
+                     "output: " + (target == Target::volume ? volume_endings() + ", and surfaces " : std::string()) + surface_endings() + "; repeatable")
       ->required()->allow_extra_args(false);
   command.add_option("--report", a.reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
   command.add_option("--names", a.names, "FILE.json: written, the labels' numbers, names and colours; any other: read, a Slicer colour table or an ITK-SNAP label description")
@@ -75,7 +75,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--refine", a.refine, "how often every tetrahedron is cut into eight at the end: the same surface and order, edges half as long")->check(CLI::Range(0, 4))->capture_default_str(),
       command.add_flag("--yes", a.yes, "go on when more than 10 million tetrahedra are estimated"),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
-      command.add_option("--timeout", a.timeout_s, "for the volume mesher, s")->check(positive)->capture_default_str()};
+      command.add_option("--timeout", a.timeout_s, "for the volume mesher, and for each run of CalculiX with --accuracy, s")->check(positive)->capture_default_str()};
   if (target == Target::surface)
     for (CLI::Option* option : of_volumes) option->group("");  // accepted without effect, so that both commands take the same line
   command.add_option("--return-parameters", a.return_parameters)->group("");
@@ -146,8 +146,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (budget_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
   o.enhancement.usual_target = !budget_asked && !sizes_asked;
   if (budget_asked && (!e.edge_length.empty() || !o.enhance))
-    fail_usage(std::string("--target-tets has no effect beside ") + (!o.enhance ? "--no-enhance or --raw" : "--edge-length"), "--target-tets " + std::to_string(e.target_tets),
-               "leave one of them out");
+    fail_usage(std::string("--target-tets and ") + (!o.enhance ? "--no-enhance" : "--edge-length") + " both say how many elements there are", "command line", "give one of them");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},

@@ -79,7 +79,7 @@ void add_validate_command(CLI::App& program) {
   command->add_option("--label", a->labels, "labels to judge: 1,4,7-9,femur_left; one label: what a mesh without labels stands for");
   command->add_flag("--merge", a->merge, "the selected labels are one");
   command->add_option("--limits", a->limits, "JSON file with other limits than the default");
-  command->add_option("--mesh-space,--space", a->space, "frame of the meshes: lps, ras, or auto: their own mark, else what overlaps best")->capture_default_str();
+  command->add_option("--mesh-space,--space", a->space, "frame of the meshes: lps, ras, image (indices times spacing, 0 the first voxel's centre), or auto: their own mark, else what overlaps best")->capture_default_str();
   command->add_option("--label-array", a->array, "cell array of the mesh that holds the labels");
   command->add_option("--spacing", a->spacing, "voxel size of PNG/TIFF slices, X,Y,Z in mm");
   command->add_flag("--as-stored", a->as_stored, "take labels that are stored finer than they were made as they are stored");

@@ -205,6 +205,13 @@ void AtomicFiles::write(const std::string& path, const std::function<void(std::F
   }
 }
 
+void AtomicFiles::write_by_name(const std::string& path, const std::function<void(const std::string&)>& write_named) {
+  write(path, [&](std::FILE*) {
+    write_named(pending_.back().temporary);
+    errno = 0;  // what the library left there is no failure
+  });
+}
+
 void AtomicFiles::commit() {
   // In the order of writing, so that of two files of one name the last stays.
   while (!pending_.empty()) {

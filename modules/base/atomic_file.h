@@ -27,6 +27,9 @@ class AtomicFiles {
   /// a folder or device of that name).
   void write(const std::string& path, const std::function<void(std::FILE*)>& write);
 
+  /// The same for a library that opens files itself: `write` gets the name of the unfinished file, which it may replace in place.
+  void write_by_name(const std::string& path, const std::function<void(const std::string&)>& write);
+
   /// Renames everything written so far to its final name. @throws Error(output)
   void commit();
 

@@ -102,6 +102,40 @@ std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, co
   return result;
 }
 
+void join_islands(const std::vector<BoundaryFace>& all, const Patch& surface, double least_share, std::vector<Patch>& patches) {
+  std::int32_t points = 0;
+  for (const std::int32_t f : surface) points = std::max({points, all[f].v[0] + 1, all[f].v[1] + 1, all[f].v[2] + 1});
+  DisjointSets shells(static_cast<std::size_t>(points));
+  for (const std::int32_t f : surface)
+    for (const int k : {1, 2}) shells.join(all[f].v[0], all[f].v[k]);
+  std::vector<double> areas;
+  double total = 0;
+  for (const Patch& p : patches) {
+    areas.push_back(0);
+    for (const std::int32_t f : p) areas.back() += all[f].area_mm2;
+    total += areas.back();
+  }
+  std::size_t large = 0;
+  while (large < patches.size() && areas[large] >= least_share * total) ++large;
+  std::vector<Patch> kept(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(large)), alone;
+  for (std::size_t i = large; i < patches.size(); ++i) {
+    const BoundaryFace& island = all[patches[i][0]];
+    double nearest = std::numeric_limits<double>::max();
+    std::size_t best = large;
+    for (std::size_t j = 0; j < large; ++j)
+      for (const std::int32_t f : patches[j]) {
+        const double distance = norm(all[f].centre - island.centre);
+        if (distance >= nearest || shells.find(all[f].v[0]) != shells.find(island.v[0])) continue;
+        nearest = distance;
+        best = j;
+      }
+    if (best == large) alone.push_back(patches[i]);
+    else kept[best].insert(kept[best].end(), patches[i].begin(), patches[i].end());
+  }
+  kept.insert(kept.end(), alone.begin(), alone.end());
+  patches = std::move(kept);
+}
+
 Patch flat_cap(const TetMesh& mesh, const std::vector<BoundaryFace>& all, const Patch& faces, Vec3 up) {
   double top = -std::numeric_limits<double>::max(), area = 0;
   for (const std::int32_t f : faces) {

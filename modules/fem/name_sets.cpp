@@ -113,6 +113,7 @@ class Namer {
     options.sharp_deg = o_.sharp_deg;
     std::vector<Patch> patches = split_at_sharp_edges(faces_, outer, wall, options);
     patches.erase(std::remove_if(patches.begin(), patches.end(), [&](const Patch& p) { return wall[p[0]] != 0; }), patches.end());
+    join_islands(faces_, faces_where([&](const BoundaryFace& f) { return f.in == label.number; }), 0.01, patches);
     if (patches.size() == 1 && patches[0].size() == outer.size()) return;
     for (std::size_t i = 0; i < patches.size(); ++i)
       add(n + "_outer_" + std::to_string(i + 1), who + ": part of its outer faces, between sharp edges", patches[i]);

@@ -84,4 +84,22 @@ void add_interface_sets(PreparedMesh& mesh) {
   }
 }
 
+const std::vector<std::int32_t>& nodes_of(const SolverSets& sets, const std::string& name) {
+  for (const NodeSet& s : sets.node_sets)
+    if (s.name == name) return s.nodes;
+  fail_internal("a step or point names a set that is not there", name);
+}
+
+std::vector<std::int32_t> material_of_tets(const PreparedMesh& mesh) {
+  std::vector<std::int32_t> material(mesh.tets.size(), 0);
+  for (std::size_t i = 0; i < mesh.sets.materials.size(); ++i)
+    for (const std::int32_t t : mesh.sets.materials[i].tets) material[t] = static_cast<std::int32_t>(i);
+  return material;
+}
+
+const LoadStep* first_static_step(const SolverSets& sets) {
+  const auto found = std::find_if(sets.steps.begin(), sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
+  return found == sets.steps.end() ? nullptr : &*found;
+}
+
 }  // namespace stackmesh

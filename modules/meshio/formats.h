@@ -20,5 +20,11 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh);
 void write_feb(std::FILE* file, const PreparedMesh& mesh);
 void write_bdf(std::FILE* file, const PreparedMesh& mesh);
 void write_medit(std::FILE* file, const PreparedMesh& mesh);
+void write_cdb(std::FILE* file, const PreparedMesh& mesh);
+void write_dyna(std::FILE* file, const PreparedMesh& mesh);
+void write_med(std::FILE* file, const PreparedMesh& mesh);
+
+// By a library that opens the file itself. @throws Error(output)
+void write_exodus(const std::string& path, const PreparedMesh& mesh);
 
 }  // namespace stackmesh

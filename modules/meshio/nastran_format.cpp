@@ -12,9 +12,9 @@ namespace stackmesh {
 namespace {
 
 /// Bulk data: large fields (16 characters) for real numbers, small ones (8) for whole numbers.
-class NastranFile : NastranFields {
+class NastranFile : FixedFields {
  public:
-  NastranFile(OutputBuffer& out, const PreparedMesh& mesh) : NastranFields(out), mesh_(mesh), sets_(mesh.sets), steps_(out, mesh) {
+  NastranFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets), steps_(out, mesh) {
     if (mesh.points.size() > 99999999 || mesh.tets.size() > 99999999)
       fail_output("Nastran's numbers have at most 8 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
   }

@@ -1,39 +1,10 @@
 #include "meshio/nastran_steps.h"
 
 #include <algorithm>
-#include <charconv>
-
-#include "base/error.h"
 
 namespace stackmesh {
-namespace {
 
-/// A number in a field of 16 characters, with the point that Nastran wants: as many digits as fit.
-std::string field16(double value) {
-  if (value == 0) return "0.";
-  for (int digits = 17; digits > 0; --digits) {
-    char buffer[64];
-    const auto end = digits == 17 ? std::to_chars(buffer, buffer + sizeof buffer, value).ptr
-                                  : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
-    std::string text(buffer, end);
-    const std::size_t exponent = text.find('e');
-    if (text.find('.') == std::string::npos) text.insert(exponent == std::string::npos ? text.size() : exponent, ".");
-    if (const std::size_t e = text.find('e'); e != std::string::npos) text[e] = 'E';
-    if (text.size() <= 16) return text;
-  }
-  return "0.";
-}
-
-}  // namespace
-
-void NastranFields::large(double value) { padded(field16(value), 16); }
-
-void NastranFields::padded(const std::string& text, std::size_t width) {
-  for (std::size_t i = text.size(); i < width; ++i) out_ << ' ';
-  out_ << text;
-}
-
-NastranSteps::NastranSteps(OutputBuffer& out, const PreparedMesh& mesh) : NastranFields(out), mesh_(mesh), sets_(mesh.sets) {
+NastranSteps::NastranSteps(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
   const bool frequency = std::any_of(sets_.steps.begin(), sets_.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::frequency; });
   for (const LoadStep& s : sets_.steps)
     if (frequency == (s.analysis == Analysis::frequency)) steps_.push_back(&s);
@@ -69,12 +40,6 @@ void NastranSteps::bulk(std::int64_t& number, std::int64_t& property) {
   points(number);
   springs(number, property);
   for (std::size_t k = 0; k < steps_.size(); ++k) step(k);
-}
-
-const std::vector<std::int32_t>& NastranSteps::nodes_of(const std::string& set) const {
-  for (const NodeSet& s : sets_.node_sets)
-    if (s.name == set) return s.nodes;
-  fail_internal("a support names a set that is not there", set);
 }
 
 bool NastranSteps::moves(const LoadStep& step) const {

@@ -1,30 +1,16 @@
 #pragma once
-// Parts of the Nastran writer: fields of cards; what acts, subcase by subcase.
+// The Nastran writer's steps: what acts, subcase by subcase.
 #include <cstdint>
 #include <string>
 
-#include "meshio/output_buffer.h"
+#include "meshio/fixed_fields.h"
 #include "meshio/prepared_mesh.h"
 
 namespace stackmesh {
 
-/// Fields of bulk data: 8 characters for whole numbers, 16 for real ones.
-class NastranFields {
- public:
-  explicit NastranFields(OutputBuffer& out) : out_(out) {}
-
- protected:
-  void small(std::int64_t value) { padded(std::to_string(value), 8); }
-  void large(std::int64_t value) { padded(std::to_string(value), 16); }
-  void large(double value);
-  void padded(const std::string& text, std::size_t width);
-
-  OutputBuffer& out_;
-};
-
 /// One subcase a step. Of a deck with frequency steps those alone are written (SOL 103); with large displacements or
 /// hyperelastic materials it is SOL 106.
-class NastranSteps : NastranFields {
+class NastranSteps : FixedFields {
  public:
   NastranSteps(OutputBuffer& out, const PreparedMesh& mesh);
 
@@ -45,7 +31,7 @@ class NastranSteps : NastranFields {
   void vector(const char* card, std::int64_t set, std::int64_t node, Vec3 value);
   void pressure(std::int64_t set, const Pressure& p);
   std::int32_t point_node(std::int32_t point) const { return static_cast<std::int32_t>(mesh_.points.size()) + point; }
-  const std::vector<std::int32_t>& nodes_of(const std::string& set) const;
+  const std::vector<std::int32_t>& nodes_of(const std::string& set) const { return stackmesh::nodes_of(sets_, set); }
 
   const PreparedMesh& mesh_;
   const SolverSets& sets_;

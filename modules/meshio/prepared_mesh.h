@@ -62,6 +62,15 @@ std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides);
 /// A node set and a face set for each pair of labels, and a placeholder material for each label.
 void add_interface_sets(PreparedMesh& mesh);
 
+/// The nodes of a set. @throws Error(internal) where there is no such set
+const std::vector<std::int32_t>& nodes_of(const SolverSets& sets, const std::string& name);
+
+/// For each tet the place of its material in SolverSets::materials.
+std::vector<std::int32_t> material_of_tets(const PreparedMesh& mesh);
+
+/// The first static step; null where there is none.
+const LoadStep* first_static_step(const SolverSets& sets);
+
 /// Makes names distinct, whatever their letter case, within a length.
 class UniqueNames {
  public:

@@ -12,20 +12,26 @@
 namespace stackmesh {
 namespace {
 
-using Writer = void (*)(std::FILE*, const PreparedMesh&);
 struct Format {
   const char* ending;
-  Writer writer;
+  void (*to_stream)(std::FILE*, const PreparedMesh&);
+  void (*by_name)(const std::string&, const PreparedMesh&) = nullptr;  ///< of a library that opens the file itself
+  bool has_sets = false;  ///< of a mere mesh it gets its interfaces as sets, and a material for each label
 };
 constexpr Format kSurfaceFormats[] = {
     {".stl", write_stl}, {".ply", write_ply}, {".obj", write_obj}, {".off", write_off}, {".vtp", write_vtp}};
 constexpr Format kVolumeFormats[] = {{".vtu", write_vtu},
                                      {".msh", write_msh4},
-                                     {".inp", write_inp},
-                                     {".feb", write_feb},
-                                     {".bdf", write_bdf},
+                                     {".inp", write_inp, nullptr, true},
+                                     {".feb", write_feb, nullptr, true},
+                                     {".bdf", write_bdf, nullptr, true},
+                                     {".cdb", write_cdb, nullptr, true},
+                                     {".k", write_dyna, nullptr, true},
+                                     {".exo", nullptr, write_exodus, true},
+                                     {".med", write_med, nullptr, true},
                                      {".vtk", write_vtk},
                                      {".mesh", write_medit}};
+constexpr Format kMsh2 = {".msh", write_msh2};
 
 /// Where the ending begins; the length of the path if it has none.
 std::size_t ending_of(const std::string& path) {
@@ -35,37 +41,51 @@ std::size_t ending_of(const std::string& path) {
 }
 
 template <std::size_t N>
-Writer find_writer(const Format (&formats)[N], const std::string& path) {
+const Format* find_format(const Format (&formats)[N], const std::string& path) {
   const std::string ending = lower_case(path.substr(ending_of(path)));
   const auto* found = std::find_if(std::begin(formats), std::end(formats),
                                    [&](const Format& f) { return ending == f.ending; });
-  return found == std::end(formats) ? nullptr : found->writer;
+  return found == std::end(formats) ? nullptr : found;
 }
 
 template <std::size_t N>
-Writer need_writer(const Format (&formats)[N], const std::string& path, const char* kind) {
-  const Writer writer = find_writer(formats, path);
-  if (writer != nullptr) return writer;
+std::string endings_of(const Format (&formats)[N]) {
   std::string endings;
   for (const Format& f : formats) endings += std::string(endings.empty() ? "" : " ") + f.ending;
-  fail_usage(std::string("the ending names no ") + kind + " format", path, "use one of " + endings);
+  return endings;
+}
+
+template <std::size_t N>
+const Format& need_format(const Format (&formats)[N], const std::string& path, const char* kind) {
+  if (const Format* format = find_format(formats, path)) return *format;
+  fail_usage(std::string("the ending names no ") + kind + " format", path, "use one of " + endings_of(formats));
+}
+
+const Format& volume_format(const std::string& path, const MeshWriteOptions& options) {
+  const Format& format = need_format(kVolumeFormats, path, "volume");
+  return format.to_stream == write_msh4 && options.msh2 ? kMsh2 : format;
+}
+
+void write_to(AtomicFiles& files, const std::string& path, const Format& format, const PreparedMesh& mesh) {
+  if (format.by_name != nullptr) files.write_by_name(path, [&](const std::string& name) { format.by_name(name, mesh); });
+  else files.write(path, [&](std::FILE* file) { format.to_stream(file, mesh); });
 }
 
 }  // namespace
 
 bool is_surface_format(const std::string& path) {
-  return find_writer(kSurfaceFormats, path) != nullptr;
+  return find_format(kSurfaceFormats, path) != nullptr;
 }
 bool is_volume_format(const std::string& path) {
-  return find_writer(kVolumeFormats, path) != nullptr;
+  return find_format(kVolumeFormats, path) != nullptr;
 }
+std::string surface_endings() { return endings_of(kSurfaceFormats); }
+std::string volume_endings() { return endings_of(kVolumeFormats); }
 
 void write_surface(AtomicFiles& files, const std::string& path, const InterfaceComplex& surface,
                    const MeshWriteOptions& options) {
-  const Writer writer = need_writer(kSurfaceFormats, path, "surface");
-  const auto write = [&](const std::string& to, const PreparedMesh& mesh) {
-    files.write(to, [&](std::FILE* file) { writer(file, mesh); });
-  };
+  const Format& format = need_format(kSurfaceFormats, path, "surface");
+  const auto write = [&](const std::string& to, const PreparedMesh& mesh) { write_to(files, to, format, mesh); };
   if (!options.per_label) {
     write(path, prepare_surface(surface, options, path));
     return;
@@ -87,19 +107,23 @@ void write_surface(AtomicFiles& files, const std::string& path, const InterfaceC
 
 void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
                   const MeshWriteOptions& options) {
-  Writer writer = need_writer(kVolumeFormats, path, "volume");
-  if (writer == write_msh4 && options.msh2) writer = write_msh2;
+  const Format& format = volume_format(path, options);
   PreparedMesh prepared = prepare_volume(mesh, options, path);
-  if (writer == write_inp || writer == write_feb || writer == write_bdf) add_interface_sets(prepared);
-  files.write(path, [&](std::FILE* file) { writer(file, prepared); });
+  if (format.has_sets) add_interface_sets(prepared);
+  write_to(files, path, format, prepared);
 }
 
 std::vector<std::string> losses_of(const std::string& path, const SolverModel& model) {
-  const Writer writer = find_writer(kVolumeFormats, path);
+  const Format* format = find_format(kVolumeFormats, path);
+  if (format == nullptr) return {};
+  const auto writer = format->to_stream;
   const SolverSets& sets = model.sets;
   std::vector<std::string> losses;
   const auto any_material = [&](MaterialKind kind) {
     return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind == kind; });
+  };
+  const auto any_material_but = [&](MaterialKind kind) {
+    return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind != kind; });
   };
   const auto any_step = [&](Analysis analysis) {
     return std::any_of(sets.steps.begin(), sets.steps.end(), [&](const LoadStep& s) { return s.analysis == analysis; });
@@ -117,14 +141,26 @@ std::vector<std::string> losses_of(const std::string& path, const SolverModel& m
         losses.push_back(path + ": fibres that turn from element to element are not written; label " + std::to_string(m.label) + " gets an isotropic material");
     if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
   }
+  const bool mesh_only = format->by_name == write_exodus || writer == write_med;
+  if (mesh_only && !sets.steps.empty())
+    losses.push_back(path + ": the format holds no load case; supports and loads are left out, their sets are there");
+  if (mesh_only && any_material_but(MaterialKind::linear)) losses.push_back(path + ": of materials the modulus and the density are written, at small strain");
+  if (mesh_only && !sets.shells.empty()) losses.push_back(path + ": of skins the faces are written, not the thickness");
+  if (mesh_only && !sets.ties.empty()) losses.push_back(path + ": the format holds no ties; the sets of nodes that follow are there");
+  if (writer == write_cdb || writer == write_dyna) {
+    if (sets.steps.size() > 1 || any_step(Analysis::frequency)) losses.push_back(path + ": the first static step is written, the others are left out");
+    if (any_material_but(MaterialKind::linear))
+      losses.push_back(path + ": materials other than linear isotropic ones are written as isotropic at small strain");
+    if (!sets.points.empty() || !sets.springs.empty()) losses.push_back(path + ": rigid points and springs are not written");
+    if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
+    if (writer == write_cdb && !sets.shells.empty()) losses.push_back(path + ": skins are not written");
+  }
   return losses;
 }
 
 void write_model(AtomicFiles& files, const std::string& path, const SolverModel& model, const MeshWriteOptions& options) {
-  Writer writer = need_writer(kVolumeFormats, path, "volume");
-  if (writer == write_msh4 && options.msh2) writer = write_msh2;
-  const PreparedMesh prepared = prepare_model(model, options, path);
-  files.write(path, [&](std::FILE* file) { writer(file, prepared); });
+  const Format& format = volume_format(path, options);
+  write_to(files, path, format, prepare_model(model, options, path));
 }
 
 }  // namespace stackmesh

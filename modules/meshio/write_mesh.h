@@ -23,8 +23,11 @@ struct MeshWriteOptions {
 
 /// True for .stl .ply .obj .off .vtp, in any letter case.
 bool is_surface_format(const std::string& path);
-/// True for .vtu .msh .inp .feb .bdf .vtk .mesh, in any letter case.
+/// True for .vtu .msh .inp .feb .bdf .cdb .k .exo .med .vtk .mesh, in any letter case.
 bool is_volume_format(const std::string& path);
+/// The endings of either, for messages.
+std::string surface_endings();
+std::string volume_endings();
 
 /// Writes the interfaces, in mm as they are, to one file (or one per label), in the format of its ending.
 /// Each interface stands in the file once. Its normal points from the label to the background, or from the

@@ -1,24 +1,31 @@
 #include "pipeline/fem_run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "base/error.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/element_quality.h"
+#include "fem/estimate_error.h"
 #include "fem/join_parts.h"
 #include "fem/label_table.h"
 #include "fem/load_case.h"
+#include "fem/recover_stress.h"
 #include "fem/selection.h"
 #include "fem/split_parts.h"
 #include "image/read_image.h"
+#include "meshio/read_frd.h"
 #include "meshio/read_mesh.h"
+#include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
+#include "pipeline/solve_with_calculix.h"
 #include "pipeline/stage_clock.h"
 #include "report/html_report.h"
 #include "validate/check_volume.h"
@@ -27,6 +34,8 @@
 
 namespace stackmesh {
 namespace {
+
+constexpr std::size_t kMostMeshes = 3;  // of --accuracy
 
 class FemRun {
  public:
@@ -42,12 +51,24 @@ class FemRun {
       if (o_.erode_px) plan_->mapping.erode_px = *o_.erode_px;
       plan_->mapping.threads = o_.mesh.threads;
     }
+    if (o_.accuracy_rel) check_accuracy();
     if (!o_.image.empty()) image_ = read_image(o_.image, {"", o_.mesh.input.allow_outside});
     const std::vector<std::string>& inputs = o_.mesh.input.paths;
     return inputs.size() == 1 && is_readable_mesh(inputs[0]) ? from_mesh(inputs[0]) : from_labels();
   }
 
  private:
+  /// What --accuracy needs, told before anything is meshed.
+  void check_accuracy() const {
+    if (!has_calculix()) fail_usage("--accuracy solves the load case with CalculiX, and there is no ccx in PATH", "--accuracy", "install calculix-ccx, or leave --accuracy out");
+    const auto has_static_step = [](const LoadCase& c) {
+      if (c.steps.empty()) return !c.always.empty();
+      return std::any_of(c.steps.begin(), c.steps.end(), [](const LoadCase::Step& s) { return s.analysis == Analysis::statics; });
+    };
+    if (!plan_ || !has_static_step(plan_->load_case))
+      fail_usage("--accuracy needs a load case with a static step to solve", "--accuracy", "give one with --materials LAW.json (docs/fem.md)");
+  }
+
   RunReport from_labels() {
     return run_mesh(
         o_.mesh, progress_, [&](MeshProduct product, RunReport& report, AtomicFiles& files) { model(std::move(product), report, files); },
@@ -78,9 +99,7 @@ class FemRun {
     check_labels(product.labels);
     clock.run("validate", [&] { check(product, report); });
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
-      for (Vec3& p : product.mesh.points) p = {-p.x, -p.y, p.z};
-    HtmlPictures pictures;
-    if (asks_for_html(o_.mesh.reports)) clock.run("write", [&] { pictures = draw(product); });
+      to_ras(product.mesh.points);
     if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.threads;
@@ -92,7 +111,12 @@ class FemRun {
         fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
       clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.refine); });
     }
-    clock.run("write", [&] { model(std::move(product), report, files); });
+    const bool html = asks_for_html(o_.mesh.reports);
+    HtmlPictures pictures;
+    clock.run("write", [&] {
+      model(html ? product : std::move(product), report, files);
+      if (html) pictures = draw(product, report);
+    });
     report.peak_rss_mb = peak_memory_mb();
     for (const std::string& r : o_.mesh.reports) {
       const std::string text = is_html_report(r) ? to_html({{"mesh", &report, &pictures}}) : to_json(report);
@@ -102,11 +126,12 @@ class FemRun {
     return report;
   }
 
-  HtmlPictures draw(const MeshProduct& product) const {
+  HtmlPictures draw(const MeshProduct& product, const RunReport& report) const {
     const InterfaceComplex surface = {product.mesh.points, product.mesh.faces};
     HtmlScene scene;
     scene.surface = &surface;
     scene.mesh = &product.mesh;
+    scene.values = &report.fem->faces;
     scene.space = product.space == WorldSpace::none ? "none" : o_.mesh.space;
     HtmlOptions options;
     options.threads = o_.mesh.threads;
@@ -116,7 +141,7 @@ class FemRun {
   void check_outputs() const {
     for (const std::string& path : o_.mesh.outputs)
       if (!is_volume_format(path))
-        fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose .inp .feb .bdf .msh .vtu .vtk");
+        fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose " + volume_endings());
     check_report_names(o_.mesh.reports);
     if (o_.mesh.space != "lps" && o_.mesh.space != "ras") fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
   }
@@ -138,7 +163,7 @@ class FemRun {
     product.up = o_.up;
     if (file.space && *file.space == WorldSpace::none) product.space = WorldSpace::none;
     if (file.space && *file.space == WorldSpace::ras)
-      for (Vec3& p : file.points) p = {-p.x, -p.y, p.z};
+      to_ras(file.points);  // and back again
     if (product.space == WorldSpace::none) report.input.space = "none";
     product.mesh.points = std::move(file.points);
     product.mesh.tets = std::move(file.tets);
@@ -232,7 +257,95 @@ class FemRun {
     report.provenance = find_provenance({report.input.path});
   }
 
+  /// A model, and what there is to say of it.
+  struct Built {
+    SolverModel model;
+    MaterialReport materials;
+    std::vector<std::string> warnings;
+  };
+
   void model(MeshProduct product, RunReport& report, AtomicFiles& files) {
+    Built built = build(product);
+    std::optional<FemAccuracy> accuracy;
+    if (o_.accuracy_rel) accuracy = refine_until_accurate(product, built);
+    product.mesh = TetMesh();
+    const SolverModel& model = built.model;
+    for (const std::string& w : built.warnings) report.warnings.push_back(w);
+    report.fem = summary(model, built.materials);
+    if (asks_for_html(o_.mesh.reports)) report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
+    report.fem->accuracy = std::move(accuracy);
+    if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back(not_reached(*report.fem->accuracy));
+
+    MeshWriteOptions write = o_.mesh.write;
+    write.space = product.space;
+    for (const std::string& path : o_.mesh.outputs) {
+      if (!is_volume_format(path)) continue;
+      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
+      write_model(files, path, model, write);
+    }
+  }
+
+  /// Von Mises stress at the model's nodes, out of a result of CalculiX for this very model.
+  std::vector<double> mises_of(const SolverModel& model) const {
+    const FrdResult result = read_frd(o_.result);
+    const auto stress = result.fields.find("STRESS");
+    if (stress == result.fields.end()) fail_input("the result has no stress", o_.result, "ask for it in the deck: *EL FILE and S, as decks with a load case do");
+    std::vector<double> mises(model.mesh.points.size(), 0);
+    for (std::size_t i = 0; i < result.numbers.size(); ++i) {
+      const std::int64_t node = result.numbers[i] - 1;
+      if (node < 0 || node >= static_cast<std::int64_t>(mises.size())) continue;  // of rigid points and springs
+      const Vec3 p = model.mesh.points[node];
+      if (norm(result.points[i] - p) > 1e-3 + 1e-4 * norm(p))
+        fail_input("the result is of another mesh: its node " + std::to_string(node + 1) + " lies elsewhere", o_.result, "give the result of this input with these very options");
+      const auto& s = stress->second[i];
+      const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+      mises[node] = std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+    }
+    return mises;
+  }
+
+  std::string not_reached(const FemAccuracy& a) const {
+    char text[240];
+    std::snprintf(text, sizeof text, "the accuracy of %.3g %% was not reached: %.3g %% in set %s on the last of %zu meshes; ", 100 * a.asked_rel, 100 * a.estimate.error_rel,
+                  a.estimate.worst_set.c_str(), a.elements.size());
+    return text + std::string(a.elements.size() < kMostMeshes ? "a finer one would have more than " + std::to_string(most_elements()) + " elements (--yes solves it)"
+                                                             : "begin with smaller edges");
+  }
+  std::size_t most_elements() const { return o_.mesh.order == 2 ? 150000 : 1000000; }
+
+  /// Solves the load case on the mesh, on its tetrahedra cut into eight, and once more, until what changes is small enough. The last
+  /// model is the one that is written.
+  FemAccuracy refine_until_accurate(MeshProduct& product, Built& built) {
+    FemAccuracy out;
+    out.asked_rel = *o_.accuracy_rel;
+    std::vector<StressMeasure> measures;
+    for (;;) {
+      const SolverModel& model = built.model;
+      for (const LoadStep& s : model.sets.steps)
+        if (s.large_displacements) fail_usage("--accuracy is for steps of small displacements", s.name, "leave --accuracy or large_displacements out");
+      if (model.sets.has_contact()) fail_usage("--accuracy is for bodies that are joined, not for contact", "--accuracy", "tie the parts, or leave --accuracy out");
+      SolverModel first = model;  // its first static step alone
+      const LoadStep step = *std::find_if(first.sets.steps.begin(), first.sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
+      first.sets.steps = {step};
+      MeshWriteOptions write = o_.mesh.write;
+      write.space = product.space;
+      const auto begin = std::chrono::steady_clock::now();
+      const std::vector<Vec3> moved = solve_with_calculix(first, write, o_.mesh.threads, o_.mesh.fill.timeout_s);
+      out.solve_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      out.elements.push_back(model.mesh.tets.size());
+      measures.push_back(recover_stress(first, moved));
+      if (measures.size() > 1) {
+        out.estimate = estimate_error(measures, o_.mesh.order);
+        out.reached = out.estimate.error_rel <= out.asked_rel;
+      }
+      if (out.reached || measures.size() == kMostMeshes || (!o_.mesh.many_tets && measures.size() > 1 && 8 * model.mesh.tets.size() > most_elements())) return out;
+      product.mesh = refine_tets(std::move(product.mesh), 1);
+      built = build(product);
+    }
+  }
+
+  Built build(const MeshProduct& product) const {
+    Built out;
     const bool ras = product.space == WorldSpace::ras;
     SetOptions sets;
     sets.up = product.up;
@@ -248,19 +361,19 @@ class FemRun {
     }
     for (const auto& [text, thickness] : o_.skins)
       for (const std::size_t k : resolve_labels(known, text)) sets.skins.push_back({known[k].number, thickness});
-    SolverModel model = name_sets(product.mesh, product.labels, sets);
-    product.mesh = TetMesh();
+    out.model = name_sets(product.mesh, product.labels, sets);
+    SolverModel& model = out.model;
 
     if (image_) {
-      for (const std::string& w : image_->warnings) report.warnings.push_back(w);
+      for (const std::string& w : image_->warnings) out.warnings.push_back(w);
       if (product.space == WorldSpace::none)
         fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
     }
     MaterialOptions how;
     how.ras = ras;
-    const MaterialReport materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr, how);
-    for (const std::string& w : materials.warnings) report.warnings.push_back(w);
-    if (!plan_) report.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
+    out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr, how);
+    for (const std::string& w : out.materials.warnings) out.warnings.push_back(w);
+    if (!plan_) out.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
     if (plan_) apply_load_case(model, plan_->load_case, o_.materials);
     JoinOptions join;
@@ -269,18 +382,10 @@ class FemRun {
     join.path = o_.materials;
     join_parts(model, join);
     check_supports(model, o_.materials);
-    report.fem = summary(model, materials);
     if (model.mesh.mid.empty() && !model.sets.steps.empty())
-      report.warnings.push_back("linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
+      out.warnings.push_back("linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
                                 "take --order 2 for figures that are to be relied on");
-
-    MeshWriteOptions write = o_.mesh.write;
-    write.space = product.space;
-    for (const std::string& path : o_.mesh.outputs) {
-      if (!is_volume_format(path)) continue;
-      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
-      write_model(files, path, model, write);
-    }
+    return out;
   }
 
   FemReport summary(const SolverModel& model, const MaterialReport& materials) const {

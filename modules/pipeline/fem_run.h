@@ -18,6 +18,8 @@ struct FemRunOptions {
   std::vector<std::pair<std::string, double>> skins;        ///< label, thickness in mm
   std::vector<std::string> selections;                      ///< see fem/selection.h
   double sharp_deg = 50;
+  std::optional<double> accuracy_rel;  ///< the load case is solved on finer and finer meshes until this is reached
+  std::string result;       ///< of CalculiX (.frd), for this very model: its stress colours the page; empty: none
   std::string label_array;  ///< of a mesh file: the cell array that holds labels; empty: the usual names
   Vec3 up = {0, 0, 1};      ///< of a mesh file: the axis along which its caps lie
 };

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "pipeline/complete_report.h"
+#include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
@@ -70,13 +71,12 @@ class MeshRun {
       const bool surface = is_surface_format(path), volume = is_volume_format(path);
       if (!surface && !(volume && o_.target == Target::volume))
         fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
-                   o_.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
-                                               : "choose .stl .ply .obj .off .vtp");
+                   o_.target == Target::volume ? "choose " + volume_endings() + ", or for the surface " + surface_endings() : "choose " + surface_endings());
     }
     if (o_.order == 2)
       for (const std::string& path : o_.outputs)
         if (ends_with(path, ".mesh"))
-          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
+          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose another one of " + volume_endings());
     check_report_names(o_.reports);
     if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
     std::vector<std::string> all = o_.outputs, inputs = o_.input.paths;
@@ -505,14 +505,6 @@ class MeshRun {
     return w;
   }
 
-  /// LPS to RAS turns half a revolution about z: exact, and triangles keep their sense.
-  static void to_ras(std::vector<Vec3>& points) {
-    for (Vec3& p : points) {
-      p.x = -p.x;
-      p.y = -p.y;
-    }
-  }
-
   void write() {
     if (world_ == WorldSpace::ras) {
       to_ras(surface_.points);
@@ -531,37 +523,14 @@ class MeshRun {
 
   /// The mesh in the frame that will be written, for the solver model.
   void make_model() {
-    MeshProduct product;
+    TetMesh mesh;
     if (wants_html()) {
-      product.mesh = *mesh_;  // the page shows it
+      mesh = *mesh_;  // the page shows it
     } else {
-      product.mesh = std::move(*mesh_);
+      mesh = std::move(*mesh_);
       mesh_.reset();
     }
-    product.labels = input_.labels;
-    product.space = world_;
-    product.up = frame_.axes[2];
-    if (input_.volume) {
-      const LabelVolume& v = *input_.volume;
-      ImageBox box;
-      box.origin = v.world(-0.5, -0.5, -0.5);
-      box.axes = v.axes;
-      box.spacing_mm = v.spacing_mm;
-      for (int d = 0; d < 3; ++d) box.length_mm[d] = v.spacing_mm[d] * v.size[d];
-      product.image = box;
-    }
-    if (world_ == WorldSpace::ras) {
-      to_ras(product.mesh.points);
-      std::vector<Vec3> turned = {product.up};
-      if (product.image) turned.insert(turned.end(), {product.image->origin, product.image->axes[0], product.image->axes[1], product.image->axes[2]});
-      to_ras(turned);
-      product.up = turned[0];
-      if (product.image) {
-        product.image->origin = turned[1];
-        for (int d = 0; d < 3; ++d) product.image->axes[d] = turned[2 + d];
-      }
-    }
-    model_(std::move(product), report_, files_);
+    model_(make_product(std::move(mesh), input_, frame_.axes[2], world_), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -583,6 +552,12 @@ class MeshRun {
     if (input_.volume) scene.volume = &*input_.volume;
     else scene.sections = &stack_;
     scene.stack_axis = axis_;
+    InterfaceComplex of_model;  // corners of second-order tetrahedra lie beside the surface's
+    if (report_.fem && mesh_) {
+      of_model = {mesh_->points, mesh_->faces};
+      scene.surface = &of_model;
+      scene.values = &report_.fem->faces;
+    }
     scene.space = world_ == WorldSpace::none ? "none" : world_ == WorldSpace::ras && written ? "ras" : "lps";
     HtmlOptions options;
     options.threads = o_.threads;

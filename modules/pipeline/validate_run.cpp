@@ -41,6 +41,7 @@ struct Against {
   Input input;
   std::array<int, 3> stored_size = {0, 0, 0};  // of a volume, as its file has it
   std::array<double, 3> stored_spacing_mm = {0, 0, 0};
+  Frame stored_frame;  // from the centre of its first voxel
   int axis = 2;
   std::optional<OverlapMeter> meter;
 };
@@ -139,6 +140,10 @@ class ValidateRun {
     JudgedMesh& m = *report_.mesh;
     const bool anatomical = against_ && against_->input.volume && against_->input.volume->anatomical;
     const bool known = anatomical || !against_;
+    if (o_.mesh_space == "image") {
+      take_image_frame(anatomical);
+      return;
+    }
     m.space = known ? "lps" : "none";
     world_ = known ? WorldSpace::lps : WorldSpace::none;
     if (against_ && !anatomical) {
@@ -180,6 +185,19 @@ class ValidateRun {
     m.space_reason = "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
     if (std::abs(lps - ras) < 0.05) warn("the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space");
     if (is_ras) to_lps();
+  }
+
+  /// Coordinates are indices times spacing, 0 the centre of the first voxel: they are moved to where the voxels lie.
+  void take_image_frame(bool anatomical) {
+    if (!against_ || !against_->input.volume) fail_usage("--mesh-space image needs the image", "command line", "name the label volume with --against");
+    for (std::vector<Vec3>* points : {&surface_.points, &tets_.points})
+      for (Vec3& p : *points) p = against_->stored_frame.to_world(p);
+    turn_round();  // axes may mirror
+    world_ = anatomical ? WorldSpace::lps : WorldSpace::none;
+    const double dice = overlap(Frame{});
+    report_.mesh->space = anatomical ? "lps" : "none";
+    report_.mesh->space_reason = "moved from indices times spacing, as --mesh-space tells (Dice " + percent(dice) + ")";
+    if (dice == 0) no_overlap("as indices times spacing", {});
   }
 
   void to_lps() { scale(-1, -1, 1); }
@@ -481,8 +499,8 @@ class ValidateRun {
 
 void check_names(const ValidateRunOptions& o) {
   check_report_names(o.reports);
-  if (o.mesh_space != "auto" && o.mesh_space != "lps" && o.mesh_space != "ras")
-    fail_usage("unknown space '" + o.mesh_space + "'", "--mesh-space", "choose lps, ras or auto");
+  if (o.mesh_space != "auto" && o.mesh_space != "lps" && o.mesh_space != "ras" && o.mesh_space != "image")
+    fail_usage("unknown space '" + o.mesh_space + "'", "--mesh-space", "choose lps, ras, image or auto");
   std::vector<std::string> inputs = o.meshes;
   if (o.against) inputs.insert(inputs.end(), o.against->paths.begin(), o.against->paths.end());
   check_output_files(o.reports, inputs);
@@ -526,6 +544,7 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
         if (against->input.volume) {
           against->stored_size = against->input.volume->size;
           against->stored_spacing_mm = against->input.volume->spacing_mm;
+          against->stored_frame = {against->input.volume->origin_mm, against->input.volume->axes};
           if (!o.as_stored) reduce_to_true_grid(against->input, o.threads);
           against->axis = stacking_axis(*against->input.volume, o.axis);
           against->meter.emplace(*against->input.volume, against->axis, o.threads);

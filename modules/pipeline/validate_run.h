@@ -17,7 +17,7 @@ struct ValidateRunOptions {
   std::optional<InputOptions> against; ///< labels or contours; unset: the meshes are judged alone
   StackAxis axis = StackAxis::automatic;
   bool as_stored = false;              ///< labels that are stored finer than they were made stay as they are stored
-  std::string mesh_space = "auto";     ///< "lps", "ras", or "auto": the mark in the file, else what overlaps best
+  std::string mesh_space = "auto";     ///< "lps", "ras", "image": indices times spacing, or "auto": the mark in the file, else what overlaps best
   MeshReadOptions read;
   std::optional<Limits> limits;        ///< unset: the defaults
   std::vector<std::string> reports;    ///< file names; the ending gives the format

@@ -64,6 +64,7 @@ struct DrawnTriangle {
   std::array<std::int32_t, 3> v;
   std::int32_t below, above;
   std::uint8_t angle;
+  TriangleValues values;
 };
 
 /// Vertices to draw, and triangles between them.
@@ -169,14 +170,16 @@ DisplayGrid grid_over(const std::vector<Vec3>& points) {
 }
 
 PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm, const DisplayGrid& grid,
-                        const LabelIndex& index, std::size_t most) {
+                        const LabelIndex& index, std::size_t most, const std::vector<TriangleValues>& values) {
   Drawn drawn;
   drawn.distances_mm = distances_mm;
   for (const Vec3& p : complex.points) drawn.points.push_back(on_grid(p, grid));
   drawn.triangles.reserve(complex.triangles.size());
-  for (const InterfaceTriangle& t : complex.triangles) {
+  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
+    const InterfaceTriangle& t = complex.triangles[i];
     const auto angles = triangle_angles_deg(complex.points[t.v[0]], complex.points[t.v[1]], complex.points[t.v[2]]);
-    drawn.triangles.push_back({t.v, index(t.below), index(t.above), angle_step(std::min({angles[0], angles[1], angles[2]}))});
+    drawn.triangles.push_back({t.v, index(t.below), index(t.above), angle_step(std::min({angles[0], angles[1], angles[2]})),
+                               values.empty() ? TriangleValues{} : values[i]});
   }
   PackedMesh packed;
   if (drawn.triangles.size() > most) {
@@ -201,7 +204,7 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
   }
   std::stable_sort(drawn.triangles.begin(), drawn.triangles.end(),
                    [](const DrawnTriangle& a, const DrawnTriangle& b) { return a.v < b.v; });
-  Bytes corners, labels, angles, distances;
+  Bytes corners, labels, angles, distances, model;
   std::int32_t last = 0;
   for (const DrawnTriangle& t : drawn.triangles) {
     corners.number(static_cast<std::uint64_t>(t.v[0] - last));
@@ -211,6 +214,7 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
     labels.number(static_cast<std::uint64_t>(t.below));
     labels.number(static_cast<std::uint64_t>(t.above));
     angles.byte(t.angle);
+    for (const std::uint8_t v : {t.values.set, t.values.acts, t.values.modulus, t.values.mises}) model.byte(v);
   }
   packed.vertices = drawn.points.size();
   packed.elements = drawn.triangles.size();
@@ -224,6 +228,10 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
       distances.byte(static_cast<std::uint8_t>(std::lround(drawn.distances_mm[p] / packed.distance_unit_mm)));
     packed.names.push_back("distances");
     packed.chunks.push_back(std::move(distances.text));
+  }
+  if (!values.empty()) {
+    packed.names.push_back("values");
+    packed.chunks.push_back(std::move(model.text));
   }
   return packed;
 }

@@ -7,6 +7,7 @@
 #include "model/complex.h"
 #include "model/tet_mesh.h"
 #include "report/label_index.h"
+#include "report/surface_values.h"
 
 namespace stackmesh {
 
@@ -28,9 +29,10 @@ struct PackedMesh {
 
 /// The surface: positions, triangles, the two labels and smallest angle of each, the distance of each vertex (if
 /// any are given: one per point of the complex). Above `most` triangles the vertices of a cell that bound the same
-/// labels are joined; what is kept of each are the largest distance and the smallest angle.
+/// labels are joined; what is kept of each are the largest distance and the smallest angle. `values` of a solver model are one per
+/// triangle, or none.
 PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm, const DisplayGrid& grid,
-                        const LabelIndex& index, std::size_t most);
+                        const LabelIndex& index, std::size_t most, const std::vector<TriangleValues>& values = {});
 
 /// The tets: positions, corners, labels and smallest dihedral angle of each. Above `most` tets one of several is kept.
 PackedMesh pack_tets(const TetMesh& mesh, const DisplayGrid& grid, const LabelIndex& index, std::size_t most, int threads);

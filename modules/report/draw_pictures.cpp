@@ -243,8 +243,14 @@ class Pictures {
     if (scene_.surface->triangles.empty()) return;
     const DisplayGrid grid = grid_over(scene_.surface->points);
     PackedMesh packed;
+    const std::vector<TriangleValues> values = scene_.values == nullptr ? std::vector<TriangleValues>() : values_on(*scene_.surface, *scene_.values);
     json_["surface"] = fitted("surface", grid, scene_.surface->triangles.size(), kSurfaceShare, std::min(400e3, kSurfaceShare * bytes_ / kTriangleBytes), packed,
-                              [&](std::size_t most) { return pack_surface(*scene_.surface, distances_mm_, grid, index_, most); });
+                              [&](std::size_t most) { return pack_surface(*scene_.surface, distances_mm_, grid, index_, most, values); });
+    if (!values.empty())
+      json_["surface"]["model"] = {{"sets", scene_.values->sets},
+                                   {"modulus_low_mpa", scene_.values->modulus_low_mpa},
+                                   {"modulus_high_mpa", scene_.values->modulus_high_mpa},
+                                   {"mises_high_mpa", scene_.values->mises_high_mpa}};
     json_["surface"]["cell_mm"] = packed.cell_mm;
     json_["surface"]["distance_unit_mm"] = packed.distance_unit_mm;
     if (scene_.mesh == nullptr || scene_.mesh->tets.empty()) return;

@@ -8,6 +8,7 @@
 #include "model/stack.h"
 #include "model/tet_mesh.h"
 #include "report/run_report.h"
+#include "report/surface_values.h"
 
 namespace stackmesh {
 
@@ -18,6 +19,7 @@ struct HtmlScene {
   const LabelVolume* volume = nullptr;        ///< the labels that the mesh stands for ...
   const Stack* sections = nullptr;            ///< ... or its contours, for contour input
   int stack_axis = 2;                         ///< of the volume: 0, 1 or 2
+  const SurfaceValues* values = nullptr;      ///< what a solver model says of the surface, if it is one's
   std::string space = "lps";                  ///< "lps", "ras", or "none" where no anatomy is known
 };
 

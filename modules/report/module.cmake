@@ -12,8 +12,8 @@ add_custom_command(OUTPUT ${page_cpp}
   COMMENT "Embedding the report page" VERBATIM)
 stackmesh_module(report
   SOURCES run_report.cpp comparison.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
-          histograms.cpp worst_places.cpp label_colours.cpp packed.cpp
-  HEADERS run_report.h comparison.h html_report.h
+          histograms.cpp worst_places.cpp label_colours.cpp packed.cpp surface_values.cpp
+  HEADERS run_report.h comparison.h html_report.h surface_values.h
   USES base model validate fem
   PRIVATE nlohmann_json::nlohmann_json ZLIB::ZLIB)
 target_sources(stackmesh_report PRIVATE ${page_cpp})

@@ -184,6 +184,20 @@ std::string model_tables(const FemReport& f) {
     out += "<p>" + escaped(f.steps.size() > 1 ? "Step " + s.name : std::string("Load case")) + ": " + grouped(s.supports) + " supports, " +
            (s.frequency ? "natural frequencies" : grouped(s.loaded_nodes) + " loaded nodes, force in all (" + number(s.force_n.x) + ", " + number(s.force_n.y) + ", " + number(s.force_n.z) + ") N") +
            (norm(s.gravity_mm_s2) > 0 ? ", gravity" : "") + (s.large_displacements ? ", large displacements" : "") + ".</p>\n";
+  if (f.accuracy) {
+    const Accuracy& e = f.accuracy->estimate;
+    std::string meshes;
+    for (const std::size_t n : f.accuracy->elements) meshes += (meshes.empty() ? "" : ", ") + grouped(n);
+    out += "<p>Accuracy: " + number(100 * e.error_rel) + " % in set " + escaped(e.worst_set) + " (asked for " + number(100 * f.accuracy->asked_rel) + " %" +
+           (f.accuracy->reached ? "" : ", not reached") + "), by CalculiX on meshes of " + meshes + " elements; error in energy by Zienkiewicz and Zhu " +
+           number(100 * (e.zz_rel.empty() ? 0 : e.zz_rel.back())) + " %.</p>\n";
+    out += table_head("Convergence by set: von Mises stress on its faces (root mean square) and its largest displacement",
+                      {"*Set", "last mesh, MPa", "tends to, MPa", "order", "error, %", "displacement, mm", "its error, %", "Zienkiewicz-Zhu, %", "largest stress, MPa", "*counts"});
+    for (const SetAccuracy& s : e.sets)
+      out += head(s.set) + cell(s.mises_rms_mpa.back(), 4) + cell(s.mises_extrapolated_mpa, 4) + cell(s.order) + cell(100 * s.error_rel) + cell(s.displacement_max_mm.back(), 4) +
+             cell(100 * s.displacement_error_rel) + cell(100 * s.zz_rel) + cell(s.mises_max_mpa.back(), 4) + text_cell(s.held ? "no, it is held" : "yes") + "</tr>\n";
+    out += end;
+  }
   return out;
 }
 

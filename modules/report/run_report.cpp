@@ -206,7 +206,26 @@ Json fem(const FemReport& f) {
                      {"force_n", {s.force_n.x, s.force_n.y, s.force_n.z}},
                      {"gravity_mm_s2", {s.gravity_mm_s2.x, s.gravity_mm_s2.y, s.gravity_mm_s2.z}}});
   for (const auto& [name, thickness] : f.skins) skins.push_back({{"name", name}, {"thickness_mm", thickness}});
+  Json accuracy = nullptr;
+  if (f.accuracy) {
+    const Accuracy& e = f.accuracy->estimate;
+    Json rows = Json::array();
+    for (const SetAccuracy& s : e.sets)
+      rows.push_back({{"set", s.set},
+                      {"mises_rms_mpa", s.mises_rms_mpa},
+                      {"mises_max_mpa", s.mises_max_mpa},
+                      {"displacement_max_mm", s.displacement_max_mm},
+                      {"mises_extrapolated_mpa", s.mises_extrapolated_mpa},
+                      {"order", s.order},
+                      {"error_rel", s.error_rel},
+                      {"displacement_error_rel", s.displacement_error_rel},
+                      {"zz_rel", s.zz_rel},
+                      {"held", s.held}});
+    accuracy = {{"asked_rel", f.accuracy->asked_rel}, {"reached", f.accuracy->reached},  {"error_rel", e.error_rel}, {"worst_set", e.worst_set},
+                {"elements", f.accuracy->elements},   {"solve_s", f.accuracy->solve_s}, {"zz_rel", e.zz_rel},       {"sets", rows}};
+  }
   return {{"order", f.order},
+          {"accuracy", accuracy},
           {"nodes", f.nodes},
           {"elements", f.elements},
           {"shells", f.shells},

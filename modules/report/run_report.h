@@ -8,11 +8,13 @@
 
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
+#include "fem/estimate_error.h"
 #include "model/geometry.h"
 #include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_volume.h"
+#include "report/surface_values.h"
 #include "validate/verdict.h"
 
 namespace stackmesh {
@@ -86,6 +88,15 @@ struct FemStep {
   Vec3 gravity_mm_s2;
 };
 
+/// The convergence that `stackmesh fem --accuracy` found.
+struct FemAccuracy {
+  double asked_rel = 0;
+  bool reached = false;
+  std::vector<std::size_t> elements;  ///< of each mesh that was solved
+  std::vector<double> solve_s;
+  Accuracy estimate;
+};
+
 /// The solver model of `stackmesh fem`.
 struct FemReport {
   int order = 2;
@@ -100,6 +111,8 @@ struct FemReport {
   Vec3 force_n;                                ///< of the first step
   std::vector<FemStep> steps;
   std::vector<Body> bodies;  ///< the largest first
+  std::optional<FemAccuracy> accuracy;
+  SurfaceValues faces;  ///< for the pictures alone
 };
 
 /// Everything a run reports (modules/report/README.md lists the fields of the JSON form).

@@ -1,4 +1,4 @@
-// Decks for FEBio and Nastran against the rules of their formats; planted mistakes show that the rules bite.
+// Decks for FEBio, Nastran and others against the rules of their formats; planted mistakes show that the rules bite.
 #include "blocks.h"
 #include "solver.h"
 
@@ -80,6 +80,44 @@ TEST_P(DeckRules, NastranDeckKeepsThemAndPlantedMistakesDoNot) {
                                                                                 {load, turned},
                                                                                 {"SPCD*                  2", "SPCD*                  7"}})
     breaks(script, "m.bdf", from, to);
+}
+
+TEST_P(DeckRules, OtherDecksCarrySetsMaterialsAndTheLoadCase) {
+  write_mesh("m.vtu", block(4, 2, 2, {1, 1, 1}, [](int i, int, int) { return i + 1; }));
+  law(R"("1": {"E_MPa": 17000, "poisson": 0.3, "density_t_mm3": 2e-9}, "*": {"E_MPa": 1000, "poisson": 0.3, "density_t_mm3": 1e-9})",
+      R"({"fixed": [{"set": "side"}], "moved": [{"set": "end", "mm": [0.1, null, 0]}], "gravity_mm_s2": [0, 0, -9810],
+          "loaded": [{"set": "label_2_cap_high", "force_N": [1, 2, 3]}, {"set": "label_3_cap_high", "pressure_MPa": 0.25}]})");
+  fem("m.vtu --parts A=1,2 B=3,4 --select side=plane:0,0,0,1,0,0 --select end=plane:4,0,0,1,0,0 --materials law.json -o m.cdb -o m.k -o m.exo -o m.med --order " +
+      std::to_string(GetParam()));
+  const std::string warned = read("fem.log");
+  EXPECT_NE(warned.find("m.exo: the format holds no load case"), std::string::npos) << warned;
+  EXPECT_EQ(warned.find("m.cdb"), warned.find("m.cdb\n")) << "nothing is lost in .cdb: " << warned;
+  const int code = run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/other_decks.py' m.cdb m.k m.exo m.med", "summary");
+  if (code != 0 && read("summary.log").find("No module named") != std::string::npos) GTEST_SKIP() << "NOT TESTED: " << read("summary.log");
+  ASSERT_EQ(code, 0) << read("summary.log");
+  const nlohmann::json all = nlohmann::json::parse(read("summary.log"));
+  const std::size_t side = GetParam() == 1 ? 9 : 25;
+  for (const char* name : {"m.cdb", "m.k", "m.exo", "m.med"}) {
+    const nlohmann::json& d = all[name];
+    EXPECT_EQ(d["tets"], 96) << name;
+    for (const char* label : {"label_1", "label_2", "label_3", "label_4"}) EXPECT_EQ(d["parts"][label], 24) << name;
+    EXPECT_EQ(d["node_sets"]["side"], side) << name;
+    if (std::string(name) != "m.cdb") {
+      EXPECT_EQ(d["face_sets"]["side"], 8) << name;
+    }
+    EXPECT_EQ(d["E"], (std::vector<double>{1000, 17000})) << name;
+    if (std::string(name) == "m.exo" || std::string(name) == "m.med") continue;
+    EXPECT_EQ(d["held"], 3 * side + side) << name;
+    EXPECT_EQ(d["moved"], side) << name;
+    EXPECT_EQ(d["moved_mm"], 0.1) << name;
+    EXPECT_EQ(d["coupled"], 3 * side) << name;
+    EXPECT_EQ(d["coupled_apart"], 0) << name;
+    EXPECT_EQ(d["gravity"], (std::vector<double>{0, 0, -9810})) << name;
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(d["force"][k], k + 1, 1e-6) << name;
+      EXPECT_NEAR(d["pressed"][k], k == 2 ? -0.5 : 0, 1e-9) << name;  // 0.25 MPa on 2 mm2
+    }
+  }
 }
 
 }  // namespace

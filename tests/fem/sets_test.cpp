@@ -88,6 +88,26 @@ TEST(NameSets, OuterAndInnerWallAndBaseOfACupComeApart) {
   EXPECT_EQ(faces_of(m, "wall_outer_3"), 0u);
 }
 
+TEST(NameSets, AnIslandBetweenOtherLabelsJoinsTheNearestPatch) {
+  // On the side x low a ring of label 2 lies round one cell of label 1.
+  const TetMesh ring = block(3, 8, 8, {1, 1, 1}, [](int i, int j, int k) { return i == 0 && std::abs(j - 4) <= 1 && std::abs(k - 4) <= 1 && !(j == 4 && k == 4) ? 2 : 1; });
+  SetOptions options;
+  options.sharp_deg = 100;
+  const SolverModel m = name_sets(ring, {{1, "wall"}, {2, "ring"}}, options);
+  EXPECT_EQ(faces_of(m, "wall_outer_1"), 2u * (64 - 8 + 64 + 2 * 24));  // all but the caps
+  EXPECT_EQ(faces_of(m, "wall_outer_2"), 0u);
+  EXPECT_EQ(faces_of(m, "ring_outer"), 2u * 8);
+}
+
+TEST(NameSets, ALoosePieceKeepsItsOwnPatchHoweverSmall) {
+  const TetMesh crumb = block(13, 10, 10, {1, 1, 1}, [](int i, int j, int k) { return i < 10 || (i == 12 && j == 5 && k == 5) ? 1 : 0; });
+  SetOptions options;
+  options.sharp_deg = 100;
+  const SolverModel m = name_sets(crumb, {{1, "wall"}}, options);
+  EXPECT_EQ(faces_of(m, "wall_outer_1"), 2u * 4 * 100);
+  EXPECT_EQ(faces_of(m, "wall_outer_2"), 12u);
+}
+
 TEST(NameSets, RoundEndHasNoCap) {
   TetMesh ball = block(4, 4, 4, {1, 1, 1});
   for (Vec3& p : ball.points) {  // the cube's surface to a sphere

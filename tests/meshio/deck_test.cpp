@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <set>
 
 #include "base/error.h"
 #include "sample_mesh.h"
@@ -26,7 +27,9 @@ int check_formats(const TetMesh& mesh, int order, const std::vector<std::string>
   for (const auto& [label, count] : labels) volume += tet_volume(mesh, label);
   std::ofstream json(folder + "/expected.json");
   json.precision(17);
-  json << "{\"points\": " << mesh.points.size() - 1 << ", \"tets\": " << mesh.tets.size() << ", \"triangles\": " << mesh.faces.size()
+  std::set<std::pair<Label, Label>> pairs;
+  for (const InterfaceTriangle& t : mesh.faces) pairs.insert(std::minmax(t.below, t.above));
+  json << "{\"pairs\": " << pairs.size() << ", \"points\": " << mesh.points.size() - 1 << ", \"tets\": " << mesh.tets.size() << ", \"triangles\": " << mesh.faces.size()
        << ", \"order\": " << order << ", \"volume\": " << volume << ", \"labels\": {";
   for (const auto& [label, count] : labels) json << (label == labels.begin()->first ? "" : ", ") << '"' << label << "\": " << count;
   json << "}, \"files\": [";
@@ -56,6 +59,30 @@ TEST(Decks, SecondOrderNodesAreOnTheRightEdgesInEveryFormat) {
   const int code = check_formats(mesh, 2, {"foo.vtu", "foo.vtk", "foo.msh", "foo2.msh", "foo.inp", "foo.feb"});
   if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
   EXPECT_EQ(code, 0);
+}
+
+TEST(Decks, AnsysDynaExodusAndMedHoldMeshAndSetsInBothOrders) {
+  for (const int order : {1, 2})
+    for (const char* name : {"foo.cdb", "foo.k", "foo.exo", "foo.med"}) {
+      const bool med = std::string(name) == "foo.med";
+      if (med && run("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) continue;  // NOT TESTED: meshio reads .med with python3-h5py
+      const int code = check_formats(order == 1 ? sample_mesh() : second_order_sample(), order, {name});
+      if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+      EXPECT_EQ(code, 0) << name << ", order " << order;
+    }
+}
+
+TEST(Decks, AMedFileThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
+  const std::string folder = testing::TempDir() + "stackmesh_full";
+  ::mkdir(folder.c_str(), 0777);
+  const std::string to = folder + "/full";
+  for (const char* ending : {".med", ".exo"}) {
+    // A bound on the size of files stands for a full disk.
+    const int code = run("cd '" + folder + "' && (ulimit -f 8; '" STACKMESH_PROGRAM "' mesh '" STACKMESH_TESTDATA "/vessel.nii.gz' -o full" + ending + " --quiet) 2>full.log");
+    EXPECT_EQ(code, 5) << read_file(folder + "/full.log");
+    EXPECT_NE(run("test -e '" + to + ending + "'"), 0);
+    EXPECT_NE(run("ls '" + folder + "' | grep -q part"), 0);
+  }
 }
 
 TEST(Decks, GmshReadsTheNastranDeckInBothOrders) {

@@ -62,6 +62,39 @@ TEST_F(HtmlReport, ShowsTheSolverModelOfLabelsAndOfAGivenMesh) {
   opens(out("R.html"));
 }
 
+TEST_F(HtmlReport, ColoursTheSolverModelBySetLoadModulusAndStress) {
+  if (std::system("command -v ccx >/dev/null 2>&1") != 0) GTEST_SKIP() << "NOT TESTED: CalculiX (calculix-ccx) is not installed";
+  const std::string law = write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
+      "labels": {"1": {"E_MPa": 1234, "poisson": 0.3}, "*": {"E_MPa": 100, "poisson": 0.3}},
+      "load_case": {"fixed": [{"set": "cap_low"}], "loaded": [{"set": "cap_high", "force_N": [0, 0, -321]}]}})");
+  const auto fem = [&](std::vector<std::string> input, std::vector<std::string> more) {
+    input.insert(input.begin(), "fem");
+    input.insert(input.end(), {"--materials", law, "-o", out("a.inp"), "--report", out("R.html"), "--quiet"});
+    input.insert(input.end(), more.begin(), more.end());
+    succeeds(input);
+  };
+  const std::vector<std::string> labels = {testdata("border.nii.gz"), "--edge-length", "6"};
+  fem(labels, {});
+  ASSERT_EQ(std::system(("cd '" + out("") + "' && OMP_NUM_THREADS=1 ccx -i a >ccx.log 2>&1").c_str()), 0);
+  fem(labels, {"--result", out("a.frd")});
+  const auto all_colours = [&] {
+    const Ended browser = python("report_in_browser.py", {out("R.html")});
+    if (browser.code == 77) return;  // NOT TESTED: no browser
+    EXPECT_EQ(browser.code, 0) << browser.out << browser.err;
+    for (const char* colour : {"set", "acts", "modulus", "mises"}) EXPECT_NE(browser.out.find(std::string("ok     colours by ") + colour), std::string::npos) << browser.out;
+  };
+  all_colours();
+  // Of a given mesh, too; and a result of another mesh is refused.
+  succeeds({"mesh", labels[0], "--edge-length", "6", "--order", "2", "-o", in("m.vtu"), "--quiet"});
+  fem({in("m.vtu")}, {});
+  ASSERT_EQ(std::system(("cd '" + out("") + "' && OMP_NUM_THREADS=1 ccx -i a >ccx.log 2>&1").c_str()), 0);
+  fem({in("m.vtu")}, {"--result", out("a.frd")});
+  all_colours();
+  const Ended other = stackmesh({"fem", labels[0], "--edge-length", "9", "--materials", law, "-o", out("b.inp"), "--report", out("R.html"), "--result", out("a.frd")});
+  EXPECT_EQ(other.code, 3);
+  EXPECT_NE(other.err.find("another mesh"), std::string::npos) << other.err;
+}
+
 TEST_F(HtmlReport, HoldsTheFiguresOfTheJson) {
   succeeds({"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
   const Json report = this->report();

@@ -41,6 +41,11 @@ TEST_F(Usage, UnknownOption) {
   wrong({"--refin=1"}, {"did you mean --refine?"});
 }
 
+TEST_F(Usage, TwoWordsOnTheNumberOfElements) {
+  wrong({"--target-tets", "5000", "--edge-length", "3"}, {"--target-tets and --edge-length", "give one"});
+  wrong({"--target-tets", "5000", "--no-enhance"}, {"--target-tets and --no-enhance", "give one"});
+}
+
 TEST_F(Usage, BadNumbers) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> bad = {
       {"--simplify", {"abc", "", "nan", "inf", "-1", "0.5x"}},

@@ -3,7 +3,9 @@
 
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "program.h"
 
@@ -178,6 +180,41 @@ TEST_F(Validate, BadInputIsOneLineAndExit3) {
   fails(2, {"validate", mesh, "--report", out("R.txt")}, {"unknown ending"});
   const std::string whole = program::read_file(mesh);
   fails(3, {"validate", write("cut.vtu", whole.substr(0, whole.size() / 2)), "--against", heart}, {"cut.vtu"});
+}
+
+TEST_F(Validate, AMeshInIndicesTimesSpacingIsMovedToItsImage) {
+  const std::string labels = program::testdata("oblique.nii.gz");  // turned, and its axes mirror
+  succeeds({"surface", labels, "--label", "100", "-o", in("world.off"), "--quiet"});
+  // The same, as programs write it that know the voxels' size alone.
+  const Json info = Json::parse(program::stackmesh({"info", labels, "--json"}).out);
+  std::ifstream file(in("world.off"));
+  std::string word;
+  std::size_t points = 0, triangles = 0, edges = 0;
+  file >> word;
+  ASSERT_EQ(word, "OFF");
+  while ((file >> std::ws).peek() == '#') std::getline(file, word);
+  file >> points >> triangles >> edges;
+  std::ostringstream text;
+  text.precision(17);
+  text << "OFF\n" << points << ' ' << triangles << " 0\n";
+  for (std::size_t i = 0; i < points; ++i) {
+    double p[3];
+    for (double& x : p) file >> x;
+    for (int k = 0; k < 3; ++k) {
+      double along = 0;
+      for (int c = 0; c < 3; ++c) along += (p[c] - info["origin_mm"][c].get<double>()) * info["direction"][k][c].get<double>();
+      text << along << (k < 2 ? ' ' : '\n');
+    }
+  }
+  text << file.rdbuf();
+  const std::string mesh = write("index.off", text.str());
+  program::Ended done = program::stackmesh({"validate", mesh, "--against", labels, "--label", "100", "--mesh-space", "image", "--report", in("R.json")});
+  EXPECT_TRUE(done.code == 0 || done.code == 6) << done.err;
+  const auto dice = [&] { return Json::parse(program::read_file(in("R.json")))["labels"][0]["dice"].get<double>(); };
+  EXPECT_GT(dice(), 0.97);
+  done = program::stackmesh({"validate", mesh, "--against", labels, "--label", "100", "--report", in("R.json")});
+  EXPECT_TRUE(done.code != 0) << "taken as it is it does not fit";
+  fails(2, {"validate", mesh, "--mesh-space", "image"}, {"needs the image"});
 }
 
 TEST_F(Validate, SecondOrderTetsAreReadAlikeFromEveryFormat) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Opens a report page from the disk in headless Chromium, with the network off, and uses it as a reader does.
 
-usage: report_in_browser.py REPORT.html [--no-webgl] [--picture FILE.png]
+usage: report_in_browser.py REPORT.html [--no-webgl] [--picture FILE.png] [--colour NAME]
 
 Fails (exit 1) when the console holds an error, when anything outside of the file is asked for, or when the slider, a
 label's switch, the cutting plane, a jump to a worst place or a sort does not change what is shown. --no-webgl checks that
@@ -30,6 +30,7 @@ arguments = argparse.ArgumentParser()
 arguments.add_argument("report")
 arguments.add_argument("--no-webgl", action="store_true")
 arguments.add_argument("--picture")
+arguments.add_argument("--colour", help="of the 3-D view in the end")
 options = arguments.parse_args()
 
 chromium, chromedriver = shutil.which("chromium"), shutil.which("chromedriver")
@@ -140,7 +141,16 @@ def use_solid(browser):
     changes(browser, "solid-canvas", "colours by quality", lambda: colour.select_by_value("quality"))
     if browser.find_element(By.CSS_SELECTOR, "#solid-colour [value=distance]").is_enabled():
         changes(browser, "solid-canvas", "colours by distance", lambda: colour.select_by_value("distance"))
-    colour.select_by_value("label")
+    for value in ("set", "acts", "modulus", "mises"):
+        if browser.find_element(By.CSS_SELECTOR, f"#solid-colour [value={value}]").is_enabled():
+            changes(browser, "solid-canvas", "colours by " + value, lambda: colour.select_by_value(value))
+            check(len(browser.find_element(By.ID, "solid-scale").text) > 5, "the legend says: " + browser.find_element(By.ID, "solid-scale").text.replace("\n", ", "))
+        else:
+            print(f"none   no colours by {value}")
+    if options.colour:
+        colour.select_by_value(options.colour)
+    else:
+        colour.select_by_value("label")
 
 
 def use_page(browser):

@@ -106,7 +106,7 @@ function readLabels(bytes, count, places) {
 async function unpackMesh(number, mesh, centre) {
   const raw = {};
   for (let i = 0; i < mesh.arrays.length; ++i) raw[mesh.arrays[i]] = await chunk(number, mesh, i);
-  const out = {positions: readPositions(raw.positions, mesh, centre), angles: raw.angles, distances: raw.distances || null};
+  const out = {positions: readPositions(raw.positions, mesh, centre), angles: raw.angles, distances: raw.distances || null, values: raw.values || null};
   if (raw.triangles) {
     out.triangles = readTriangles(raw.triangles, mesh.elements);
     out.labels = readLabels(raw.labels, 2 * mesh.elements, placesOf[number]);

@@ -15,6 +15,16 @@ function rampColour(t) {
 const ramp = Array.from({length: 256}, (_, i) => rampColour(i / 255));
 const goodAngle = 30;  // degrees; anything above is shown as good
 
+// What a solver model says of triangles: four bytes each (surface_values.h).
+const byModel = {set: {place: 0}, acts: {place: 1}, modulus: {place: 2}, mises: {place: 3}};
+const neutral = [200, 205, 210], actColours = [neutral, [52, 101, 164], [204, 62, 45], [135, 70, 150]];
+
+/** Hues a golden angle apart. */
+function setColour(number) {
+  const h = (number * 137.508) % 360 / 60, c = 0.55, x = c * (1 - Math.abs(h % 2 - 1)), m = 0.82 - c;
+  return [[c, x, 0], [x, c, 0], [0, c, x], [0, x, c], [x, 0, c], [c, 0, x]][Math.floor(h) % 6].map(v => Math.round(255 * (v + m)));
+}
+
 class SolidView {
   constructor(shown) {
     this.shown = shown;
@@ -163,6 +173,20 @@ class SolidView {
     return this.ringMap = new THREE.CanvasTexture(c);
   }
 
+  /** Colour of a triangle by what the solver model says of it. */
+  modelColour(values, t) {
+    const v = values[4 * t + byModel[this.colour].place];
+    if (this.colour === 'set') return v ? setColour(v) : neutral;
+    if (this.colour === 'acts') return actColours[v];
+    return v ? ramp[v] : neutral;
+  }
+
+  /** Names and colours of what is shown by the model: sets, or supports and loads. */
+  modelKey() {
+    const m = this.mesh.p.surface.model;
+    return this.colour === 'set' ? m.sets.map((name, i) => [name, setColour(i + 1)]) : [['free', actColours[0]], ['held or moved', actColours[1]], ['loaded', actColours[2]], ['both', actColours[3]]];
+  }
+
   distanceTop() {
     const h = (this.mesh.p.histograms || []).find(x => x.name === 'distances');
     return h ? h.high : 1;
@@ -182,6 +206,7 @@ class SolidView {
         const c = 3 * t + k;
         let f, r;
         if (this.colour === 'distance' && s.distances) f = r = ramp[Math.round(255 * Math.min(1, s.distances[s.triangles[c]] * unit / top))];
+        else if (byModel[this.colour]) f = r = this.modelColour(s.values, t);
         else if (this.colour === 'quality') f = r = ramp[Math.round(255 * Math.max(0, 1 - s.angles[t] / 4 / goodAngle))];
         else { f = colours[a ? below : above]; r = colours[b ? above : below]; }
         front.array.set(f, 3 * c);
@@ -340,9 +365,24 @@ class SolidView {
     const box = byId('solid-scale');
     box.hidden = this.colour === 'label';
     if (box.hidden) return;
+    if (this.colour === 'set' || this.colour === 'acts') {
+      const used = new Set();
+      const values = this.mesh.surface.values, place = byModel[this.colour].place;
+      for (let t = place; t < values.length; t += 4) used.add(values[t]);
+      box.replaceChildren(...this.modelKey().filter((x, i) => used.has(this.colour === 'set' ? i + 1 : i)).map(([name, c]) => {
+        const swatch = element('span', {class: 'swatch'});
+        swatch.style.background = 'rgb(' + c.join(',') + ')';
+        return element('div', {class: 'key'}, swatch, element('span', {text: ' ' + name}));
+      }));
+      return;
+    }
     const distance = this.colour === 'distance', top = this.distanceTop();
     const colours = [0, 0.2, 0.35, 0.5, 0.65, 0.8, 1].map(t => 'rgb(' + rampColour(t).join(',') + ')').join(',');
-    box.replaceChildren(
+    const m = this.mesh.p.surface.model;
+    const scale = this.colour === 'modulus' ? ['Young’s modulus of the tetrahedra behind, by ratio', figure(m.modulus_low_mpa) + ' MPa', figure(m.modulus_high_mpa) + ' MPa']
+        : this.colour === 'mises' ? ['von Mises stress', '0 MPa', figure(m.mises_high_mpa) + ' MPa and more'] : null;
+    if (scale) box.replaceChildren(element('div', {text: scale[0]}), element('div', {class: 'ramp', style: ''}), element('div', {class: 'ends'}, element('span', {text: scale[1]}), element('span', {text: scale[2]})));
+    else box.replaceChildren(
         element('div', {text: distance ? 'distance to the labels’ boundary' : 'smallest angle; inside: dihedral'}),
         element('div', {class: 'ramp', style: ''}),
         element('div', {class: 'ends'}, element('span', {text: distance ? '0 mm' : goodAngle + '° and more'}), element('span', {text: distance ? figure(top) + ' mm and more' : '0°'})));
@@ -360,7 +400,13 @@ class SolidView {
     const distance = byId('solid-colour').querySelector('[value=distance]');
     distance.disabled = !this.mesh.surface.distances;
     distance.textContent = 'distance to the labels' + (distance.disabled ? ' (none: there are no voxels)' : '');
-    if (distance.disabled && this.colour === 'distance') byId('solid-colour').value = this.colour = 'label';
+    const m = s.model, has = {set: m, acts: m, modulus: m && m.modulus_high_mpa > 0, mises: m && m.mises_high_mpa > 0};
+    for (const [name, there] of Object.entries(has)) {
+      const option = byId('solid-colour').querySelector('[value=' + name + ']');
+      option.hidden = option.disabled = !there;
+    }
+    const chosen = byId('solid-colour').querySelector('[value=' + this.colour + ']');
+    if (chosen.disabled) byId('solid-colour').value = this.colour = 'label';
   }
 
   /** The section picture shows another height. */
