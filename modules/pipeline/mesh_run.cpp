@@ -17,9 +17,10 @@
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
-#include "report/html_report.h"
 #include "pipeline/virtual_sections.h"
+#include "pipeline/voids.h"
 #include "pipeline/volume_sections.h"
+#include "report/html_report.h"
 #include "stitch/drawn_detail.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"
@@ -39,7 +40,7 @@ class MeshRun {
     report_.options = o_.option_texts;
     report_.warnings = o_.notes;
     clock_.run("read", [&] { read(); });
-    if (labels) labels(input_.labels);
+    if (labels) labels(filled_labels());
     clock_.run("contours", [&] { make_sections(); });
     clock_.run("stitch", [&] { stitch(); });
     if (o_.enhance && !is_too_large()) {
@@ -96,6 +97,7 @@ class MeshRun {
     if (input_.volume) keep_pieces(*input_.volume, o_.pieces, input_.warnings);
     for (const std::string& w : input_.warnings) warn(w);
     report_.input.path = input_.path;
+    report_.input.files = o_.input.paths;
     report_.input.kind = input_.kind;
     const bool anatomical = input_.anatomical;
     if (o_.space == "ras" && !anatomical)
@@ -103,6 +105,7 @@ class MeshRun {
     world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;
     report_.input.space = anatomical ? o_.space : "none";
     add_label_rows(report_, input_.labels);
+    for (LabelReport& row : report_.labels) row.is_void = input_.voids.count(row.label) > 0;
     if (!input_.volume) return;
     const LabelVolume& v = *input_.volume;
     report_.input.dimensions = v.size;
@@ -115,7 +118,8 @@ class MeshRun {
       if (report_.input.effective_spacing_mm != report_.input.spacing_mm) warn(input_.warnings.back());
     }
     double volume_mm3 = 0;
-    for (const LabelReport& row : report_.labels) volume_mm3 += row.input_volume_mm3.value_or(0);
+    for (const LabelReport& row : report_.labels)
+      if (!row.is_void) volume_mm3 += row.input_volume_mm3.value_or(0);
     if (o_.target == Target::volume && o_.fill.max_volume_mm3) refuse_too_many(1.5 * volume_mm3 / *o_.fill.max_volume_mm3);
     double bounded = 0;
     for (const auto& [label, mm3] : label_sizes(o_.label_volumes_text, "--max-volume"))
@@ -124,9 +128,14 @@ class MeshRun {
     if (o_.target == Target::volume) refuse_too_many(bounded);
   }
 
-  bool wants_html() const {
-    return asks_for_html(o_.reports);
+  std::vector<LabelInfo> filled_labels() const {
+    std::vector<LabelInfo> filled;
+    for (const LabelInfo& l : input_.labels)
+      if (input_.voids.count(l.number) == 0) filled.push_back(l);
+    return filled;
   }
+
+  bool wants_html() const { return asks_for_html(o_.reports); }
 
   /// --strict must know of a lost component, too.
   bool wants_fidelity() const { return !o_.reports.empty() || o_.strict; }
@@ -324,8 +333,13 @@ class MeshRun {
     } else if (options.dihedral_deg) {
       options.improve_deg = options.dihedral_deg;
     }
-    refuse_too_many(estimate_tets(surface_, options));
-    filled_ = fill_volume(surface_, options);
+    const bool whole = input_.voids.empty();
+    if (!whole) hollowed_ = hollowed(surface_, input_.voids);
+    const InterfaceComplex& body = whole ? surface_ : hollowed_.complex;
+    refuse_too_many(estimate_tets(body, options));
+    filled_ = fill_volume(body, options);
+    if (whole) return;
+    for (std::int32_t& t : filled_->offending_triangles) t = hollowed_.original[t];
   }
 
   void take_filled() {
@@ -378,7 +392,10 @@ class MeshRun {
   void refine() {
     refuse_too_many(static_cast<double>(mesh_->tets.size()) * std::pow(8, o_.refine));
     mesh_ = refine_tets(std::move(*mesh_), o_.refine);
+    const std::vector<LabelSurface> before = std::move(report_.surface->labels);
     take(judge(surface_of(*mesh_), o_.threads));
+    for (const LabelSurface& l : before)  // voids are not refined
+      if (input_.voids.count(l.label) > 0) report_.surface->labels.push_back(l);
     if (!is_sound()) mend_ = "leave --refine out, or use --order 1: curved sides cut into flat ones touch here";
   }
 
@@ -505,12 +522,13 @@ class MeshRun {
     return w;
   }
 
-  /// LPS to RAS turns half a revolution about z: exact, and triangles keep their sense.
-  static void to_ras(std::vector<Vec3>& points) {
-    for (Vec3& p : points) {
-      p.x = -p.x;
-      p.y = -p.y;
-    }
+  /// With voids: what bounds the filled labels; the voids' own surfaces are whole beside them.
+  InterfaceComplex written_surface() {
+    if (mesh_ && o_.refine > 0) name_voids(surface_.triangles, hollowed_.behind);
+    if (o_.write.per_label) return std::move(surface_);
+    Hollowed of_filled = hollowed(surface_, input_.voids);
+    name_voids(of_filled.complex.triangles, of_filled.behind);
+    return std::move(of_filled.complex);
   }
 
   void write() {
@@ -518,6 +536,8 @@ class MeshRun {
       to_ras(surface_.points);
       if (mesh_) to_ras(mesh_->points);
     }
+    if (mesh_) name_voids(mesh_->faces, hollowed_.behind);
+    if (!input_.voids.empty()) surface_ = written_surface();
     for (const std::string& path : o_.outputs) {
       if (is_surface_format(path)) {
         write_surface(files_, path, surface_, write_options());
@@ -531,37 +551,15 @@ class MeshRun {
 
   /// The mesh in the frame that will be written, for the solver model.
   void make_model() {
-    MeshProduct product;
+    TetMesh mesh;
     if (wants_html()) {
-      product.mesh = *mesh_;  // the page shows it
+      mesh = *mesh_;  // the page shows it
     } else {
-      product.mesh = std::move(*mesh_);
+      mesh = std::move(*mesh_);
       mesh_.reset();
     }
-    product.labels = input_.labels;
-    product.space = world_;
-    product.up = frame_.axes[2];
-    if (input_.volume) {
-      const LabelVolume& v = *input_.volume;
-      ImageBox box;
-      box.origin = v.world(-0.5, -0.5, -0.5);
-      box.axes = v.axes;
-      box.spacing_mm = v.spacing_mm;
-      for (int d = 0; d < 3; ++d) box.length_mm[d] = v.spacing_mm[d] * v.size[d];
-      product.image = box;
-    }
-    if (world_ == WorldSpace::ras) {
-      to_ras(product.mesh.points);
-      std::vector<Vec3> turned = {product.up};
-      if (product.image) turned.insert(turned.end(), {product.image->origin, product.image->axes[0], product.image->axes[1], product.image->axes[2]});
-      to_ras(turned);
-      product.up = turned[0];
-      if (product.image) {
-        product.image->origin = turned[1];
-        for (int d = 0; d < 3; ++d) product.image->axes[d] = turned[2 + d];
-      }
-    }
-    model_(std::move(product), report_, files_);
+    name_voids(mesh.faces, hollowed_.behind);
+    model_(mesh_product(std::move(mesh), input_.labels, world_, frame_.axes[2], input_.volume ? &*input_.volume : nullptr), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -616,6 +614,7 @@ class MeshRun {
   InterfaceComplex faired_;                   // stack coordinates; what enhancement draws the surface to
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   Judgement beside_;
+  Hollowed hollowed_;  // what was filled
   std::optional<FillResult> filled_;
   std::optional<TetMesh> mesh_;
   HtmlPictures pictures_;
