@@ -236,7 +236,8 @@ std::vector<ContourFile> nested_discs(unsigned seed, double& thinnest) {
 TEST(NestedStacks, WhatLiesInsideStaysInside) {
   const char* asked = std::getenv("STACKMESH_NESTED_STACKS");
   const unsigned count = asked ? static_cast<unsigned>(std::atoi(asked)) : 80;
-  for (unsigned seed = 0; seed < count; ++seed) {
+  const char* from = std::getenv("STACKMESH_NESTED_FROM");
+  for (unsigned seed = from ? static_cast<unsigned>(std::atoi(from)) : 0; seed < count; ++seed) {
     double thinnest = 0;
     std::vector<ContourFile> files = nested_discs(seed, thinnest);
     const int levels = static_cast<int>(files.size());
@@ -265,6 +266,21 @@ TEST(NestedStacks, WhatLiesInsideStaysInside) {
       EXPECT_EQ(l.components, one_file ? (levels + 1) / 2 : 1) << "seed " << seed << " label " << l.label << " of " << levels << (one_file ? " in one file" : "") << (caps == Caps::flat ? " flat" : " round") << " per gap " << per_gap.value_or(-1);
     }
   }
+}
+
+TEST(NestedStacks, ANestThatGrowsByMoreThanItsWallsStaysOne) {
+  // A ring and a disc in it, drawn as one label; the next ring lies wholly outside of this one, the next disc beneath it.
+  const auto nest = [](double r) { return std::vector{disc(0, 0, r), disc(0, 0, r - 2), disc(0, 0, r - 4)}; };
+  for (const bool grows : {true, false})
+    for (const int per_gap : {0, 1}) {
+      const Made m = make({file_of(1, every(6, 4), [&](double z) { return nest((z < 9) == grows ? 18 : 24); })}, {}, per_gap, Caps::round);
+      EXPECT_TRUE(m.warnings.empty());
+      EXPECT_EQ(surface_of(m.check, 1).genus, 0) << grows << per_gap;
+      EXPECT_EQ(surface_of(m.check, 1).components, 2) << grows << per_gap;
+    }
+  // Where the levels are not the same, what overlaps goes on: a ring and the disc in it, both beneath one solid.
+  const Made joined = make({file_of(1, every(6, 4), [&](double z) { return z < 9 ? nest(18) : std::vector{disc(0, 0, 17)}; })}, {}, 1, Caps::round);
+  EXPECT_EQ(surface_of(joined.check, 1).components, 1);
 }
 
 TEST(DrawnShapes, HaveTheirVolumeGenusAndEnds) {
