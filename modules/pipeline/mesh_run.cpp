@@ -1,7 +1,6 @@
 #include "pipeline/mesh_run.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -34,7 +33,7 @@ class MeshRun {
       : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
   RunReport run(const LabelsStage& labels) {
-    check_outputs();
+    check_mesh_outputs(o_);
     report_.command = o_.command;
     report_.version = o_.version;
     report_.options = o_.option_texts;
@@ -66,27 +65,6 @@ class MeshRun {
   }
 
  private:
-  void check_outputs() const {
-    for (const std::string& path : o_.outputs) {
-      const bool surface = is_surface_format(path), volume = is_volume_format(path);
-      if (!surface && !(volume && o_.target == Target::volume))
-        fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
-                   o_.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
-                                               : "choose .stl .ply .obj .off .vtp");
-    }
-    if (o_.order == 2)
-      for (const std::string& path : o_.outputs)
-        if (ends_with(path, ".mesh"))
-          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
-    check_report_names(o_.reports);
-    if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
-    std::vector<std::string> all = o_.outputs, inputs = o_.input.paths;
-    all.insert(all.end(), o_.reports.begin(), o_.reports.end());
-    all.insert(all.end(), o_.names_outputs.begin(), o_.names_outputs.end());
-    inputs.push_back(o_.input.names);
-    check_output_files(all, inputs);
-  }
-
   void warn(const std::string& text) { report_.warnings.push_back(text); }
 
   void read() {
