@@ -33,7 +33,7 @@ struct MeshArguments {
   std::string max_volume;
   double radius_edge = 0, dihedral = 0;
   int order = 1, refine = 0;
-  std::string keep_largest;
+  std::string voids, keep_largest;
   double min_piece_mm3 = 0;
   bool strict = false, per_label = false, msh2 = false, yes = false;
   std::string return_parameters;  // of 3D Slicer
@@ -51,6 +51,8 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   a.contours.add_to(command);
   command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
   command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round, per end 1:high=flat,low=round")->capture_default_str();
+  command.add_option("--void,--keep-sets", a.voids, "labels that bound the others and are not filled (blood, a medullary canal), whatever --label says; their walls are sets L_inner_V")
+      ->type_name("LABEL[,LABEL]");
   command.add_option("--keep-largest", a.keep_largest, "only the largest piece of each label, or the N largest")->expected(0, 1)->type_name("[N]");
   command.add_option("--min-piece", a.min_piece_mm3, "no piece of a label that is smaller, mm3")->check(positive);
   command.add_option("--space", a.space, "world frame of what is written: lps or ras")->capture_default_str();
@@ -94,6 +96,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.command = target == Target::volume ? "mesh" : "surface";
   o.version = STACKMESH_VERSION;
   o.input = a.input.options();
+  o.input.voids = a.voids;
   o.sections = a.contours.options();
   o.threads = a.contours.threads;
   o.stitch.snap_mm = a.snap_mm;
@@ -148,6 +151,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (budget_asked && (!e.edge_length.empty() || !o.enhance))
     fail_usage(std::string("--target-tets and ") + (!o.enhance ? "--no-enhance" : "--edge-length") + " both say how many elements there are", "command line", "give one of them");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
+                    {"void", a.voids.empty() ? "none" : a.voids},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
                     {"simplify_px", a.contours.simplify_px >= 0 ? text_of(a.contours.simplify_px) : "default"},

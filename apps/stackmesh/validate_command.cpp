@@ -14,7 +14,7 @@ namespace {
 struct ValidateArguments {
   std::vector<std::string> meshes, reports, against;
   bool allow_outside = false;
-  std::string spacing, labels, axis = "auto", space = "auto", array, limits, defects;
+  std::string spacing, labels, voids, axis = "auto", space = "auto", array, limits, defects;
   bool as_stored = false, merge = false, write_defects = false;
   int threads = 0;
   TerminalArguments terminal;
@@ -27,8 +27,9 @@ ValidateRunOptions to_options(const ValidateArguments& a) {
     InputArguments input;
     input.paths = a.against, input.spacing = a.spacing, input.labels = a.labels, input.merge = a.merge, input.allow_outside = a.allow_outside;
     o.against = input.options();
-  } else if (!a.labels.empty() || a.merge) {
-    fail_usage("--label and --merge choose labels of --against", "command line", "name the labels with --against");
+    o.against->voids = a.voids;
+  } else if (!a.labels.empty() || !a.voids.empty() || a.merge) {
+    fail_usage("--label, --void and --merge choose labels of --against", "command line", "name the labels with --against");
   }
   ContourArguments contours;
   contours.axis = a.axis;
@@ -43,6 +44,7 @@ ValidateRunOptions to_options(const ValidateArguments& a) {
   o.threads = a.threads;
   o.version = STACKMESH_VERSION;
   o.option_texts = {{"label", a.labels.empty() ? "all" : a.labels},
+                    {"void", a.voids.empty() ? "none" : a.voids},
                     {"merge", a.merge ? "on" : "off"},
                     {"axis", a.axis},
                     {"as_stored", a.as_stored ? "on" : "off"},
@@ -77,6 +79,7 @@ void add_validate_command(CLI::App& program) {
   command->add_option("--against", a->against, "label volume, folder or glob of slices, masks, or .cnt files that the mesh stands for");
   command->add_option("--report", a->reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
   command->add_option("--label", a->labels, "labels to judge: 1,4,7-9,femur_left; one label: what a mesh without labels stands for");
+  command->add_option("--void,--keep-sets", a->voids, "labels that the mesh leaves empty");
   command->add_flag("--merge", a->merge, "the selected labels are one");
   command->add_option("--limits", a->limits, "JSON file with other limits than the default");
   command->add_option("--mesh-space,--space", a->space, "frame of the meshes: lps, ras, image (indices times spacing, 0 the first voxel's centre), or auto: their own mark, else what overlaps best")->capture_default_str();

@@ -33,8 +33,14 @@ class Namer {
       for (const LabelInfo& known : labels)
         if (known.number == l) infos.back() = known;
     }
-    model_.labels = solver_names(std::move(infos));
     faces_ = boundary_faces(model_.mesh);
+    const std::set<Label> voids = find_voids(present);
+    for (const Label l : voids) {
+      infos.push_back({l, ""});
+      for (const LabelInfo& known : labels)
+        if (known.number == l) infos.back() = known;
+    }
+    for (const LabelInfo& l : solver_names(std::move(infos))) (voids.count(l.number) > 0 ? voids_ : model_.labels).push_back(l);
     for (const LabelInfo& l : model_.labels) taken_.insert(lower_case(l.name));
   }
 
@@ -42,6 +48,7 @@ class Namer {
     number_parts();
     for (const LabelInfo& l : model_.labels) outer_of(l);
     for (const LabelInfo& l : model_.labels) interfaces_of(l);
+    for (const LabelInfo& v : voids_) walls_of(v);
     all_caps();
     image_sides();
     parts();
@@ -52,6 +59,24 @@ class Namer {
   }
 
  private:
+  /// Tells the faces on a void of it; the mesh's own faces are spent.
+  std::set<Label> find_voids(const std::set<Label>& present) {
+    std::map<std::array<std::int32_t, 3>, Label> behind;
+    for (const InterfaceTriangle& f : model_.mesh.faces)
+      for (const Label l : {f.below, f.above})
+        if (l != 0 && present.count(l) == 0) behind[sorted(f.v)] = l;
+    model_.mesh.faces.clear();
+    std::set<Label> voids;
+    if (behind.empty()) return voids;
+    for (BoundaryFace& f : faces_)
+      if (const auto at = behind.find(sorted(f.v)); f.out == 0 && at != behind.end()) voids.insert(f.behind = at->second);
+    return voids;
+  }
+  static std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> v) {
+    std::sort(v.begin(), v.end());
+    return v;
+  }
+
   std::string unique(const std::string& name) {
     std::string result = name;
     for (int n = 2; !taken_.insert(lower_case(result)).second; ++n) result = name + "_" + std::to_string(n);
@@ -99,7 +124,7 @@ class Namer {
 
   void outer_of(const LabelInfo& label) {
     const std::string n = label.name, who = "label " + std::to_string(label.number);
-    std::vector<std::int32_t> outer = faces_where([&](const BoundaryFace& f) { return f.in == label.number && f.out == 0; });
+    std::vector<std::int32_t> outer = faces_where([&](const BoundaryFace& f) { return f.in == label.number && f.out == 0 && f.behind == 0; });
     if (outer.empty()) return;
     add(n + "_outer", who + ": faces to the background", outer);
     std::vector<char> wall(faces_.size(), 0);
@@ -125,6 +150,22 @@ class Namer {
       if (faces_[i].in == label.number && faces_[i].out != 0) to[faces_[i].out].push_back(static_cast<std::int32_t>(i));
     for (auto& [other, list] : to)
       add(label.name + "_to_" + name_of(other), "faces of label " + std::to_string(label.number) + " on label " + std::to_string(other), std::move(list));
+  }
+
+  void walls_of(const LabelInfo& hollow) {
+    int labels = 0;
+    for (const LabelInfo& l : model_.labels) {
+      std::vector<std::int32_t> wall = faces_where([&](const BoundaryFace& f) { return f.in == l.number && f.behind == hollow.number; });
+      labels += wall.empty() ? 0 : 1;
+      add(l.name + "_inner_" + void_name(hollow), "faces of label " + std::to_string(l.number) + " on void " + std::to_string(hollow.number), std::move(wall));
+    }
+    if (labels > 1)
+      add("inner_" + void_name(hollow), "faces of all labels on void " + std::to_string(hollow.number), faces_where([&](const BoundaryFace& f) { return f.behind == hollow.number; }));
+  }
+  /// By its name, or the bare number where it has none.
+  static std::string void_name(const LabelInfo& hollow) {
+    const std::string number = std::to_string(hollow.number);
+    return hollow.name == "label_" + number ? number : hollow.name;
   }
 
   void all_caps() {
@@ -160,7 +201,7 @@ class Namer {
         const double at = dot(out, box.origin + (high ? box.length_mm[axis] : 0.0) * box.axes[axis]);
         add(std::string("border_") + "xyz"[axis] + (high ? "_high" : "_low"),
             std::string("faces on the image's own side, ") + "xyz"[axis] + (high ? " high" : " low"), faces_where([&](const BoundaryFace& f) {
-              bool on = f.out == 0 && dot(out, f.normal) > 0.9;
+              bool on = f.out == 0 && f.behind == 0 && dot(out, f.normal) > 0.9;
               for (const std::int32_t v : f.v) on = on && dot(out, model_.mesh.points[v]) > at - 0.3 * box.spacing_mm[axis];
               return on;
             }));
@@ -208,6 +249,7 @@ class Namer {
       return nullptr;
     };
     const auto place = [&](std::int32_t f) {
+      if (faces_[f].behind != 0) return name_of(faces_[f].in) + "_inner_" + std::to_string(faces_[f].behind);
       return faces_[f].out == 0 ? name_of(faces_[f].in) + "_outer" : name_of(faces_[f].in) + "_to_" + name_of(faces_[f].out);
     };
     const auto names = [&] {
@@ -321,6 +363,7 @@ class Namer {
 
   const SetOptions& o_;
   SolverModel model_;
+  std::vector<LabelInfo> voids_;
   std::vector<BoundaryFace> faces_;
   std::vector<FaceList> lists_;
   std::vector<Patch> caps_low_, caps_high_;

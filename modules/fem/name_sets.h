@@ -32,7 +32,8 @@ struct SetOptions {
 ///
 /// For each label L (by its name): `L_outer`, its faces to the background; `L_cap_low`, `L_cap_high`, flat ends along the
 /// stacking axis; `L_outer_1`, `L_outer_2` ... the rest of them by connected piece and sharp edge, largest first; for each two
-/// labels that touch `L_to_M` and `M_to_L`, their common face from either side; `border_x_low` ... `border_z_high`, faces on
+/// labels that touch `L_to_M` and `M_to_L`, their common face from either side; for each void V that the mesh's `faces` tell of (a
+/// label on their open side) `L_inner_V`, its faces to it, which are not of `L_outer`; with several labels `inner_V`, all faces to it; `border_x_low` ... `border_z_high`, faces on
 /// the image's own sides; with several labels `cap_low`, `cap_high`, all caps of an end; then the selections. Each is a face set
 /// and a node set of one name. With parts, nodes that several of them share are given to each of them, the faces between them
 /// are `contact_A_B`, `contact_B_A`, their outlines `rim_A_B`, `rim_B_A`, nodes of three parts `triple_A_B_C`.

@@ -36,6 +36,14 @@ TetMesh ordered_mesh(const TetMesh& mesh) {
     out.mid.push_back(mesh.mid[t]);
     for (std::int32_t& v : out.mid.back()) v = number[v];
   }
+  for (InterfaceTriangle f : mesh.faces) {
+    bool there = true;
+    for (std::int32_t& v : f.v) {
+      there = there && v >= 0 && static_cast<std::size_t>(v) < number.size() && number[v] >= 0;
+      if (there) v = number[v];
+    }
+    if (there) out.faces.push_back(f);
+  }
   return out;
 }
 

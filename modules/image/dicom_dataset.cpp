@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "image/dicom_file.h"
 #include "image/dicom_nesting.h"
+#include "image/dicom_text.h"
 
 namespace stackmesh {
 namespace {
@@ -47,6 +48,15 @@ std::string clean(const std::string& text) {
   return a == std::string::npos ? "" : out.substr(a, b - a + 1);
 }
 
+/// Specific Character Set of an item, or of what it lies in; all of its values.
+std::string character_sets_of(DcmItem& item) {
+  for (DcmItem* at = &item; at != nullptr; at = at->getParentItem()) {
+    OFString sets;
+    if (at->findAndGetOFStringArray(DCM_SpecificCharacterSet, sets).good() && !sets.empty()) return sets.c_str();
+  }
+  return "";
+}
+
 std::string field_name(const DcmTagKey& key) {
   DcmTag tag(key);
   return std::string(tag.getTagName()) + " " + key.toString().c_str();
@@ -63,7 +73,8 @@ std::unique_ptr<DcmFileFormat> load_dicom(const std::string& path) {
   const OFCondition status = file->loadFile(path.c_str());
   if (status.bad()) fail_input("the DICOM file is damaged or truncated", path, again);
   if (file->getDataset() == nullptr || file->getDataset()->card() == 0) fail_input("this is no DICOM file, or it is damaged", path, again);
-  file->getDataset()->convertToUTF8();  // where that fails, clean() sees to it
+  // Code extensions are text_of()'s; where the conversion fails, clean() sees to it.
+  if (!needs_code_extensions(character_sets_of(*file->getDataset()))) file->getDataset()->convertToUTF8();
   return file;
 }
 
@@ -93,6 +104,9 @@ DcmItem* first_item(DcmItem& item, const DcmTagKey& sequence) {
 
 std::string text_of(DcmItem& item, const DcmTagKey& tag) {
   OFString value;
+  const std::string sets = character_sets_of(item);
+  if (needs_code_extensions(sets))
+    return item.findAndGetOFStringArray(tag, value).good() ? clean(decode_dicom_text(value.c_str(), sets)) : "";
   if (item.findAndGetOFString(tag, value).bad()) return "";
   return clean(value.c_str());
 }

@@ -228,8 +228,23 @@ class NestedFiller {
     }
   }
 
-  /// A part that meets its label in the other slice must meet it at its own level of nesting, too.
+  /// The label of each level of nesting, if each is a single region; else nothing.
+  static std::vector<std::uint16_t> chain(const Nesting& n) {
+    std::vector<std::uint16_t> out;
+    std::size_t inside = 0;
+    for (const Region& r : n.regions) {
+      if (r.outside) continue;
+      ++inside;
+      if (r.level >= static_cast<int>(out.size())) out.resize(static_cast<std::size_t>(r.level) + 1, kHole);
+      out[static_cast<std::size_t>(r.level)] = r.label;
+    }
+    return inside == out.size() ? out : std::vector<std::uint16_t>();
+  }
+
+  /// A part that meets its label in the other slice must meet it at its own level of nesting, too; unless the two slices are the same
+  /// single nest, one of which has grown or moved by more than its walls: then the levels tell what goes on in what.
   bool agree() const {
+    if (const std::vector<std::uint16_t> nest = chain(low_); !nest.empty() && nest == chain(high_)) return true;
     std::vector<std::uint8_t> low(low_.regions.size(), 0), high(high_.regions.size(), 0);  // 1: at another level, 2: at its own
     for (std::size_t p = 0; p < low_.of.size(); ++p) {
       const Region &a = low_.regions[low_.of[p]], &b = high_.regions[high_.of[p]];

@@ -1,5 +1,6 @@
 // The sets that a deck of a mere mesh gets: its interfaces, and materials to be replaced.
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 #include "meshio/prepared_mesh.h"
@@ -41,8 +42,11 @@ std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides) {
           if (below || has_below[listed[k]] == 0) owners[listed[k]] = {static_cast<std::int32_t>(t), f};
         }
       }
+  std::set<Label> filled;  // a label without tets is a void
+  for (const LabelGroup& group : mesh.labels) filled.insert(group.label);
   for (std::size_t i = 0; i < owners.size(); ++i) {
-    const bool below = mesh.triangles[i].below == 0 || has_below[i] != 0, above = mesh.triangles[i].above == 0 || has_above[i] != 0;
+    const InterfaceTriangle& t = mesh.triangles[i];
+    const bool below = filled.count(t.below) == 0 || has_below[i] != 0, above = filled.count(t.above) == 0 || has_above[i] != 0;
     if (owners[i].tet < 0 || (both_sides && !(below && above)))
       fail_internal("an interface triangle is not a face of a tet of each of its labels",
                     "triangle " + std::to_string(i) + " between labels " +

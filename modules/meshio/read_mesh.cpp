@@ -269,9 +269,16 @@ class MeshFinisher {
       if (kept == 0) fail_input("all tetrahedra have label 0, the background", raw_.path, "name another array with --label-array");
     }
     if (!below_ || !above_) return;
+    const std::set<Label> filled(out_.tet_labels.begin(), out_.tet_labels.end());
     for (std::size_t t = 0; t < raw_.triangles.size(); ++t) {
-      const auto [below, above] = sides_of_cell(raw_.triangle_cell[t]);
-      if (below >= 0 && above >= 0 && below != above) out_.triangles.push_back({raw_.triangles[t], below, above});
+      auto [below, above] = sides_of_cell(raw_.triangle_cell[t]);
+      if (below < 0 || above < 0) continue;
+      Label behind = 0;
+      for (Label* side : {&below, &above})
+        if (*side != 0 && filled.count(*side) == 0) behind = *side, *side = 0;
+      if (below == above) continue;
+      out_.triangles.push_back({raw_.triangles[t], below, above});
+      out_.behind.push_back(behind);
     }
   }
 

@@ -28,6 +28,7 @@ struct MeshFile {
   /// Surface triangles. Of a file without tets: the normal points from `below` into `above`. Of a file with
   /// tets: only those that carry both labels; all others are left out, as the tets' faces tell more.
   std::vector<InterfaceTriangle> triangles;
+  std::vector<Label> behind;  ///< of a file with tets, per triangle: a label that it names and no tet has (a void), taken for background; 0: none
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on kTetEdges; empty: linear
   std::vector<Label> tet_labels;                     ///< one per tet

@@ -96,8 +96,8 @@ class XmlFile {
   std::uint64_t offset_ = 0;
 };
 
-/// Cell data of the tets followed by the triangles. A triangle has the label of the tet behind it (of two, that of `below`), so
-/// that a viewer, which draws both, shows one colour.
+/// Cell data of the tets followed by the triangles. A triangle has the label of the tet behind it (of two, that of `below`; a void
+/// has none), so that a viewer, which draws both, shows one colour.
 struct CellLabels {
   std::vector<std::int32_t> label, below, above;
 
@@ -106,7 +106,8 @@ struct CellLabels {
     label.reserve(cells);
     for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.end - g.begin, g.label);
     if (mesh.sets.parts.empty()) {
-      for (const PairGroup& g : mesh.pairs) label.insert(label.end(), g.end - g.begin, g.below != 0 ? g.below : g.above);
+      const auto has_tets = [&](Label l) { return std::any_of(mesh.labels.begin(), mesh.labels.end(), [&](const LabelGroup& g) { return g.label == l; }); };
+      for (const PairGroup& g : mesh.pairs) label.insert(label.end(), g.end - g.begin, g.below != 0 && (g.above == 0 || mesh.tets.empty() || has_tets(g.below)) ? g.below : g.above);
     } else {  // each part has its own side
       for (const TetFace f : face_owners(mesh, false)) label.push_back(label[f.tet]);
     }

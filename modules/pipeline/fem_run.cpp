@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -27,6 +28,7 @@
 #include "pipeline/report_names.h"
 #include "pipeline/solve_with_calculix.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/voids.h"
 #include "report/html_report.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
@@ -54,7 +56,9 @@ class FemRun {
     if (o_.accuracy_rel) check_accuracy();
     if (!o_.image.empty()) image_ = read_image(o_.image, {"", o_.mesh.input.allow_outside});
     const std::vector<std::string>& inputs = o_.mesh.input.paths;
-    return inputs.size() == 1 && is_readable_mesh(inputs[0]) ? from_mesh(inputs[0]) : from_labels();
+    if (inputs.size() != 1 || !is_readable_mesh(inputs[0])) return from_labels();
+    if (!o_.mesh.input.voids.empty()) fail_usage("--void needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
+    return from_mesh(inputs[0]);
   }
 
  private:
@@ -98,6 +102,7 @@ class FemRun {
     clock.run("read", [&] { product = read(path, report); });
     check_labels(product.labels);
     clock.run("validate", [&] { check(product, report); });
+    const std::vector<Label> behind = voids_behind(product.mesh.faces);
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
       to_ras(product.mesh.points);
     if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
@@ -111,6 +116,8 @@ class FemRun {
         fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
       clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.refine); });
     }
+    name_voids(product.mesh.faces, behind);
+    product.labels.insert(product.labels.end(), voids_.begin(), voids_.end());
     const bool html = asks_for_html(o_.mesh.reports);
     HtmlPictures pictures;
     clock.run("write", [&] {
@@ -176,9 +183,29 @@ class FemRun {
       for (const LabelInfo& named : file.names)
         if (named.number == l) product.labels.back() = named;
     }
-    if (!o_.mesh.input.names.empty()) apply_label_table(read_label_table(o_.mesh.input.names), product.labels);
+    for (std::size_t t = 0; t < file.behind.size(); ++t)
+      if (file.behind[t] != 0) walls_[sorted(file.triangles[t].v)] = file.behind[t];
+    for (const LabelInfo& named : file.names)
+      if (std::find(file.behind.begin(), file.behind.end(), named.number) != file.behind.end()) voids_.push_back(named);
+    if (!o_.mesh.input.names.empty()) {
+      const std::vector<LabelInfo> table = read_label_table(o_.mesh.input.names);
+      apply_label_table(table, product.labels);
+      apply_label_table(table, voids_);
+    }
     keep_labels(product);
     return product;
+  }
+
+  static std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> v) {
+    std::sort(v.begin(), v.end());
+    return v;
+  }
+  /// The void behind each face, as the file tells.
+  std::vector<Label> voids_behind(const std::vector<InterfaceTriangle>& faces) const {
+    std::vector<Label> behind(walls_.empty() ? 0 : faces.size(), 0);
+    for (std::size_t i = 0; i < behind.size(); ++i)
+      if (const auto at = walls_.find(sorted(faces[i].v)); at != walls_.end() && (faces[i].below == 0 || faces[i].above == 0)) behind[i] = at->second;
+    return behind;
   }
 
   /// --label and --merge.
@@ -206,7 +233,7 @@ class FemRun {
     product.labels = std::move(kept);
   }
 
-  void check(MeshProduct& product, RunReport& report) const {
+  void check(MeshProduct& product, RunReport& report) {
     TetMesh& mesh = product.mesh;
     const ElementQuality quality = element_quality(mesh);
     if (!quality.non_positive.empty()) {
@@ -232,6 +259,7 @@ class FemRun {
       } else {
         report.warnings.push_back(text + ": they were joined to it before --parts");
         mesh = whole;
+        walls_.clear();  // they name the nodes before
       }
     }
     mesh.faces = faces_of_tets(mesh);
@@ -445,6 +473,8 @@ class FemRun {
   Progress& progress_;
   std::optional<MaterialPlan> plan_;
   std::optional<IntensityVolume> image_;
+  std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
+  std::vector<LabelInfo> voids_;                        // that the mesh names
 };
 
 }  // namespace

@@ -108,9 +108,28 @@ std::string structure_set_in(const std::vector<std::string>& paths) {
   return content.structure_sets.empty() ? "" : label_object(content, paths[0]);
 }
 
+/// Voids are read beside the labels that were asked for; where drawn ones overlap they go first, as a cavity lies in its wall.
+InputOptions with_voids(InputOptions options) {
+  if (options.voids.empty()) return options;
+  if (options.merge) fail_usage("--merge has no meaning beside --void", "command line", "leave one of them out");
+  if (!options.labels.empty()) options.labels = options.voids + "," + options.labels;
+  return options;
+}
+
+std::set<Label> resolve_voids(const std::string& text, const std::vector<LabelInfo>& labels) {
+  std::set<Label> voids;
+  if (text.empty()) return voids;
+  std::vector<LabelInfo> known = {{0, ""}};
+  known.insert(known.end(), labels.begin(), labels.end());
+  for (const std::size_t k : resolve_labels(known, text, "--void")) voids.insert(known[k].number);
+  if (voids.size() == labels.size()) fail_usage("every label is a void: nothing is left to be filled", "--void " + text, "name the labels that only bound others");
+  return voids;
+}
+
 }  // namespace
 
-Input read_input(const InputOptions& options) {
+Input read_input(const InputOptions& asked) {
+  const InputOptions options = with_voids(asked);
   Input input;
   if (options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
   for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
@@ -120,9 +139,31 @@ Input read_input(const InputOptions& options) {
   if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);
   // Names come from files and file names: control characters in them would reach terminals and split lines of decks.
   for (LabelInfo& label : input.labels) label.name = printable(label.name);
+  input.voids = resolve_voids(options.voids, input.labels);
   if (input.volume)
     for (LabelInfo& label : input.volume->labels) label.name = printable(label.name);
   return input;
+}
+
+void empty_voids(Input& input) {
+  if (input.voids.empty()) return;
+  const auto is_void = [&](const LabelInfo& l) { return input.voids.count(l.number) > 0; };
+  input.labels.erase(std::remove_if(input.labels.begin(), input.labels.end(), is_void), input.labels.end());
+  if (input.volume) {
+    std::vector<std::size_t> keep;
+    for (std::size_t k = 1; k < input.volume->labels.size(); ++k)
+      if (!is_void(input.volume->labels[k])) keep.push_back(k);
+    input.volume = select_labels(std::move(*input.volume), keep, false);
+    return;
+  }
+  std::vector<LabelInfo>& labels = input.sections->labels;
+  labels.erase(std::remove_if(labels.begin() + 1, labels.end(), is_void), labels.end());
+  for (Section& s : input.sections->sections) {
+    for (SectionEdge& e : s.edges)
+      for (Label* side : {&e.left, &e.right})
+        if (input.voids.count(*side) > 0) *side = 0;
+    s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
+  }
 }
 
 std::array<double, 3> reduce_to_true_grid(Input& input, int threads) {

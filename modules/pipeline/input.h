@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct InputOptions {
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   std::string series;                               ///< DICOM: series instance UID where a folder holds several
   bool allow_outside = false;                       ///< a detached header may name data files outside of its folder
+  std::string voids;                                ///< labels that bound the others and are not filled, as `labels`; they are read whatever that says
   bool merge = false;                               ///< selected labels become one
   Caps caps = Caps::automatic;                      ///< how drawn labels end: other labels go on beside them
   std::vector<std::pair<std::string, LabelEndCaps>> label_caps;  ///< by name or number
@@ -31,11 +33,15 @@ struct Input {
   bool anatomical = false;        ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
   std::string path, kind;
   std::vector<LabelInfo> labels;  ///< without the background
+  std::set<Label> voids;          ///< those of them that are not filled
   std::vector<std::string> warnings;
 };
 
 /// Reads the input and keeps the labels that were asked for. @throws Error(input), Error(usage)
 Input read_input(const InputOptions& options);
+
+/// Makes background of the voids: what a mesh that leaves them empty is judged against.
+void empty_voids(Input& input);
 
 /// Puts a label volume that is stored finer than it was made onto the grid on which it was made, with a warning that says so.
 /// @return its voxels there, or as they are stored where nothing tells otherwise, mm

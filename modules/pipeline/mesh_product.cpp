@@ -5,25 +5,27 @@
 namespace stackmesh {
 
 void to_ras(std::vector<Vec3>& points) {
-  for (Vec3& p : points) p = {-p.x, -p.y, p.z};
+  for (Vec3& p : points) {
+    p.x = -p.x;
+    p.y = -p.y;
+  }
 }
 
-MeshProduct make_product(TetMesh mesh, const Input& input, Vec3 up, WorldSpace world) {
+MeshProduct mesh_product(TetMesh mesh, std::vector<LabelInfo> labels, WorldSpace space, Vec3 up, const LabelVolume* volume) {
   MeshProduct product;
   product.mesh = std::move(mesh);
-  product.labels = input.labels;
-  product.space = world;
+  product.labels = std::move(labels);
+  product.space = space;
   product.up = up;
-  if (input.volume) {
-    const LabelVolume& v = *input.volume;
+  if (volume != nullptr) {
     ImageBox box;
-    box.origin = v.world(-0.5, -0.5, -0.5);
-    box.axes = v.axes;
-    box.spacing_mm = v.spacing_mm;
-    for (int d = 0; d < 3; ++d) box.length_mm[d] = v.spacing_mm[d] * v.size[d];
+    box.origin = volume->world(-0.5, -0.5, -0.5);
+    box.axes = volume->axes;
+    box.spacing_mm = volume->spacing_mm;
+    for (int d = 0; d < 3; ++d) box.length_mm[d] = volume->spacing_mm[d] * volume->size[d];
     product.image = box;
   }
-  if (world != WorldSpace::ras) return product;
+  if (space != WorldSpace::ras) return product;
   to_ras(product.mesh.points);
   std::vector<Vec3> turned = {product.up};
   if (product.image) turned.insert(turned.end(), {product.image->origin, product.image->axes[0], product.image->axes[1], product.image->axes[2]});

@@ -1,7 +1,6 @@
 #include "pipeline/mesh_run.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -18,9 +17,10 @@
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
 #include "pipeline/stage_clock.h"
-#include "report/html_report.h"
 #include "pipeline/virtual_sections.h"
+#include "pipeline/voids.h"
 #include "pipeline/volume_sections.h"
+#include "report/html_report.h"
 #include "stitch/drawn_detail.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"
@@ -34,13 +34,13 @@ class MeshRun {
       : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
   RunReport run(const LabelsStage& labels) {
-    check_outputs();
+    check_mesh_outputs(o_);
     report_.command = o_.command;
     report_.version = o_.version;
     report_.options = o_.option_texts;
     report_.warnings = o_.notes;
     clock_.run("read", [&] { read(); });
-    if (labels) labels(input_.labels);
+    if (labels) labels(filled_labels());
     clock_.run("contours", [&] { make_sections(); });
     clock_.run("stitch", [&] { stitch(); });
     if (o_.enhance && !is_too_large()) {
@@ -66,26 +66,6 @@ class MeshRun {
   }
 
  private:
-  void check_outputs() const {
-    for (const std::string& path : o_.outputs) {
-      const bool surface = is_surface_format(path), volume = is_volume_format(path);
-      if (!surface && !(volume && o_.target == Target::volume))
-        fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
-                   o_.target == Target::volume ? "choose " + volume_endings() + ", or for the surface " + surface_endings() : "choose " + surface_endings());
-    }
-    if (o_.order == 2)
-      for (const std::string& path : o_.outputs)
-        if (ends_with(path, ".mesh"))
-          fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose another one of " + volume_endings());
-    check_report_names(o_.reports);
-    if (o_.space != "lps" && o_.space != "ras") fail_usage("unknown space '" + o_.space + "'", "--space", "choose lps or ras");
-    std::vector<std::string> all = o_.outputs, inputs = o_.input.paths;
-    all.insert(all.end(), o_.reports.begin(), o_.reports.end());
-    all.insert(all.end(), o_.names_outputs.begin(), o_.names_outputs.end());
-    inputs.push_back(o_.input.names);
-    check_output_files(all, inputs);
-  }
-
   void warn(const std::string& text) { report_.warnings.push_back(text); }
 
   void read() {
@@ -96,6 +76,7 @@ class MeshRun {
     if (input_.volume) keep_pieces(*input_.volume, o_.pieces, input_.warnings);
     for (const std::string& w : input_.warnings) warn(w);
     report_.input.path = input_.path;
+    report_.input.files = o_.input.paths;
     report_.input.kind = input_.kind;
     const bool anatomical = input_.anatomical;
     if (o_.space == "ras" && !anatomical)
@@ -103,6 +84,7 @@ class MeshRun {
     world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;
     report_.input.space = anatomical ? o_.space : "none";
     add_label_rows(report_, input_.labels);
+    for (LabelReport& row : report_.labels) row.is_void = input_.voids.count(row.label) > 0;
     if (!input_.volume) return;
     const LabelVolume& v = *input_.volume;
     report_.input.dimensions = v.size;
@@ -115,7 +97,8 @@ class MeshRun {
       if (report_.input.effective_spacing_mm != report_.input.spacing_mm) warn(input_.warnings.back());
     }
     double volume_mm3 = 0;
-    for (const LabelReport& row : report_.labels) volume_mm3 += row.input_volume_mm3.value_or(0);
+    for (const LabelReport& row : report_.labels)
+      if (!row.is_void) volume_mm3 += row.input_volume_mm3.value_or(0);
     if (o_.target == Target::volume && o_.fill.max_volume_mm3) refuse_too_many(1.5 * volume_mm3 / *o_.fill.max_volume_mm3);
     double bounded = 0;
     for (const auto& [label, mm3] : label_sizes(o_.label_volumes_text, "--max-volume"))
@@ -124,9 +107,14 @@ class MeshRun {
     if (o_.target == Target::volume) refuse_too_many(bounded);
   }
 
-  bool wants_html() const {
-    return asks_for_html(o_.reports);
+  std::vector<LabelInfo> filled_labels() const {
+    std::vector<LabelInfo> filled;
+    for (const LabelInfo& l : input_.labels)
+      if (input_.voids.count(l.number) == 0) filled.push_back(l);
+    return filled;
   }
+
+  bool wants_html() const { return asks_for_html(o_.reports); }
 
   /// --strict must know of a lost component, too.
   bool wants_fidelity() const { return !o_.reports.empty() || o_.strict; }
@@ -324,8 +312,14 @@ class MeshRun {
     } else if (options.dihedral_deg) {
       options.improve_deg = options.dihedral_deg;
     }
-    refuse_too_many(estimate_tets(surface_, options));
-    filled_ = fill_volume(surface_, options);
+    const bool whole = input_.voids.empty();
+    options.outside_is_empty = whole;
+    if (!whole) hollowed_ = hollowed(surface_, input_.voids);
+    const InterfaceComplex& body = whole ? surface_ : hollowed_.complex;
+    refuse_too_many(estimate_tets(body, options));
+    filled_ = fill_volume(body, options);
+    if (whole) return;
+    for (std::int32_t& t : filled_->offending_triangles) t = hollowed_.original[t];
   }
 
   void take_filled() {
@@ -378,7 +372,10 @@ class MeshRun {
   void refine() {
     refuse_too_many(static_cast<double>(mesh_->tets.size()) * std::pow(8, o_.refine));
     mesh_ = refine_tets(std::move(*mesh_), o_.refine);
+    const std::vector<LabelSurface> before = std::move(report_.surface->labels);
     take(judge(surface_of(*mesh_), o_.threads));
+    for (const LabelSurface& l : before)  // voids are not refined
+      if (input_.voids.count(l.label) > 0) report_.surface->labels.push_back(l);
     if (!is_sound()) mend_ = "leave --refine out, or use --order 1: curved sides cut into flat ones touch here";
   }
 
@@ -505,11 +502,22 @@ class MeshRun {
     return w;
   }
 
+  /// With voids: what bounds the filled labels; the voids' own surfaces are whole beside them.
+  InterfaceComplex written_surface() {
+    if (mesh_ && o_.refine > 0) name_voids(surface_.triangles, hollowed_.behind);
+    if (o_.write.per_label) return std::move(surface_);
+    Hollowed of_filled = hollowed(surface_, input_.voids);
+    name_voids(of_filled.complex.triangles, of_filled.behind);
+    return std::move(of_filled.complex);
+  }
+
   void write() {
     if (world_ == WorldSpace::ras) {
       to_ras(surface_.points);
       if (mesh_) to_ras(mesh_->points);
     }
+    if (mesh_) name_voids(mesh_->faces, hollowed_.behind);
+    if (!input_.voids.empty()) surface_ = written_surface();
     for (const std::string& path : o_.outputs) {
       if (is_surface_format(path)) {
         write_surface(files_, path, surface_, write_options());
@@ -530,7 +538,8 @@ class MeshRun {
       mesh = std::move(*mesh_);
       mesh_.reset();
     }
-    model_(make_product(std::move(mesh), input_, frame_.axes[2], world_), report_, files_);
+    name_voids(mesh.faces, hollowed_.behind);
+    model_(mesh_product(std::move(mesh), input_.labels, world_, frame_.axes[2], input_.volume ? &*input_.volume : nullptr), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -591,6 +600,7 @@ class MeshRun {
   InterfaceComplex faired_;                   // stack coordinates; what enhancement draws the surface to
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   Judgement beside_;
+  Hollowed hollowed_;  // what was filled
   std::optional<FillResult> filled_;
   std::optional<TetMesh> mesh_;
   HtmlPictures pictures_;

@@ -9,10 +9,10 @@
 #include "base/progress.h"
 #include "base/atomic_file.h"
 #include "enhance/enhance.h"
-#include "fem/name_sets.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
 #include "pipeline/keep_pieces.h"
+#include "pipeline/mesh_product.h"
 #include "pipeline/volume_sections.h"
 #include "report/run_report.h"
 #include "stitch/stitch.h"
@@ -50,19 +50,10 @@ struct MeshRunOptions {
   std::vector<std::string> notes;                 ///< warnings of the caller, for the report
 };
 
-/// A verified volume mesh and where it lies; coordinates are those that will be written.
-struct MeshProduct {
-  TetMesh mesh;
-  std::vector<LabelInfo> labels;
-  WorldSpace space = WorldSpace::lps;
-  Vec3 up = {0, 0, 1};            ///< stacking axis, from the first slice to the last
-  std::optional<ImageBox> image;  ///< of a label volume
-};
-
 /// Takes the place of writing volume files: gets the mesh, adds to the report, writes to the files.
 using ModelStage = std::function<void(MeshProduct product, RunReport& report, AtomicFiles& files)>;
 
-/// Is told the labels that will be meshed as soon as they are read, and may refuse by an Error.
+/// Is told the labels that will be filled as soon as they are read, and may refuse by an Error.
 using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
 
 /// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write. Everything

@@ -4,6 +4,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/text.h"
+#include "meshio/write_mesh.h"
+#include "pipeline/mesh_run.h"
+#include "pipeline/report_names.h"
 
 namespace stackmesh {
 namespace {
@@ -36,6 +40,25 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
       if (is_one_file(outputs[i], file_of(input))) fail_usage("an output would replace an input", "'" + outputs[i] + "'", "give the output a name of its own");
   }
   for (const std::string& path : outputs) AtomicFiles::check(path);
+}
+
+void check_mesh_outputs(const MeshRunOptions& o) {
+  for (const std::string& path : o.outputs) {
+    const bool surface = is_surface_format(path), volume = is_volume_format(path);
+    if (!surface && !(volume && o.target == Target::volume))
+      fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
+                 o.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
+                                            : "choose .stl .ply .obj .off .vtp");
+    if (o.order == 2 && ends_with(path, ".mesh"))
+      fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
+  }
+  check_report_names(o.reports);
+  if (o.space != "lps" && o.space != "ras") fail_usage("unknown space '" + o.space + "'", "--space", "choose lps or ras");
+  std::vector<std::string> all = o.outputs, inputs = o.input.paths;
+  all.insert(all.end(), o.reports.begin(), o.reports.end());
+  all.insert(all.end(), o.names_outputs.begin(), o.names_outputs.end());
+  inputs.push_back(o.input.names);
+  check_output_files(all, inputs);
 }
 
 }  // namespace stackmesh

@@ -541,6 +541,7 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
       clock.run("read", [&] {
         against.emplace();
         against->input = read_input(*o.against);
+        empty_voids(against->input);
         if (against->input.volume) {
           against->stored_size = against->input.volume->size;
           against->stored_spacing_mm = against->input.volume->spacing_mm;
@@ -550,6 +551,7 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
           against->meter.emplace(*against->input.volume, against->axis, o.threads);
         }
         describe_input(*against, start);
+        start.input.files = o.against->paths;
       });
     if (!o.reports.empty()) clock.run("provenance", [&] { start.provenance = find_provenance(o.against ? o.against->paths : std::vector<std::string>()); });
   }

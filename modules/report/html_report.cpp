@@ -44,6 +44,20 @@ std::string base_name(const std::string& path) {
   return path.substr(slash == std::string::npos ? 0 : slash + 1, end - (slash == std::string::npos ? 0 : slash + 1) + 1);
 }
 
+/// The file of the input; of several up to three, or the first two and how many more.
+std::string input_name(const RunReport& report) {
+  const std::vector<std::string>& files = report.input.files;
+  if (files.size() < 2) return base_name(report.input.path);
+  const std::size_t named = files.size() > 3 ? 2 : files.size();
+  std::string text;
+  for (std::size_t i = 0; i < named; ++i) {
+    const std::size_t equal = files[i].find('=');
+    const bool labelled = equal != std::string::npos && equal < files[i].find('/');
+    text += (i == 0 ? "" : i + 1 == files.size() ? " and " : ", ") + base_name(labelled ? files[i].substr(equal + 1) : files[i]);
+  }
+  return named < files.size() ? text + " and " + std::to_string(files.size() - named) + " more files" : text;
+}
+
 /// The page is UTF-8; file names need not be.
 std::string as_utf8(const std::string& text) {
   const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -75,7 +89,7 @@ std::string to_html(const std::vector<HtmlSubject>& subjects) {
     for (const Json& j : meshes[0]["pictures"].value("labels", Json::array()))
       if (j["label"] == l.label) colours.back() = j["colour"].get<std::string>();
   }
-  const std::string name = base_name(first.input.path);
+  const std::string name = input_name(first);
   std::string title = "Mesh of " + name, subtitle;
   if (first.fem) title = "Solver model of " + name;
   if (first.command == "validate") title = (subjects.size() > 1 ? std::to_string(subjects.size()) + " meshes" : subjects[0].name) + (name.empty() ? "" : " against " + name);

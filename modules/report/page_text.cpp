@@ -123,7 +123,7 @@ std::string label_table(const RunReport& r, const std::vector<std::string>& colo
     if (l.input_volume_mm3 && *l.input_volume_mm3 > 0) change = 100 * (l.surface_volume_mm3 / *l.input_volume_mm3 - 1);
     if (l.thin_share) thin = 100 * *l.thin_share;
     out += "<tr><th scope=\"row\" class=\"text\" data-v=\"" + std::to_string(l.label) + "\"><span class=\"swatch\" style=\"background:" + escaped(k < colours.size() ? colours[k] : "#999999") +
-           "\"></span>" + escaped(label_name(l)) + "</th>" + (l.closed ? "<td class=\"text\">yes</td>" : "<td class=\"text bad\">no</td>") +
+           "\"></span>" + escaped(label_name(l)) + (l.is_void ? " (void)" : "") + "</th>" + (l.closed ? "<td class=\"text\">yes</td>" : "<td class=\"text bad\">no</td>") +
            cell(l.components, 6, of("components")) + cell_of(l.input_components, 6) + cell(static_cast<double>(l.euler), 6) + cell_of(l.genus, 6) + cell(static_cast<double>(l.nonmanifold_edges), 6) + cell_of(l.input_volume_mm3, 4) +
            cell(l.surface_volume_mm3, 4) + cell_of(l.tet_volume_mm3, 4) + cell_of(change, 3, of("volume")) + cell_of(l.tets, 6) + cell_of(l.dice, 4, of("fidelity")) + cell_of(l.wrong_centres, 6) +
            cell_of(wrong, 3, of("fidelity")) + band_cells(l.band_distance_mm, of("fidelity")) + cell_of(l.mean_bend_deg) + cell_of(sharp, 3, of("roughness")) +

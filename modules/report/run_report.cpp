@@ -70,6 +70,7 @@ Json label(const LabelReport& l) {
   return {{"label", l.label},
           {"name", l.name},
           {"colour", l.colour ? Json(*l.colour) : Json(nullptr)},
+          {"void", l.is_void},
           {"closed", l.closed},
           {"components", l.components},
           {"input_components", optional(l.input_components)},

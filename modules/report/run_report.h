@@ -29,6 +29,7 @@ struct LabelReport {
   Label label = 0;
   std::string name;
   std::optional<std::array<std::uint8_t, 3>> colour;  ///< red, green, blue, where the input has one
+  bool is_void = false;  ///< it bounds the others and is not filled
   bool closed = false;
   int components = 0;
   std::optional<int> input_components;
@@ -121,6 +122,7 @@ struct RunReport {
   std::vector<std::pair<std::string, std::string>> options;  ///< as given or defaulted
   struct {
     std::string path, kind;
+    std::vector<std::string> files;                     ///< of an input of several; path joins them
     std::array<int, 3> dimensions = {0, 0, 0};          ///< 0: no grid (contours)
     std::array<double, 3> spacing_mm = {0, 0, 0};
     std::array<double, 3> effective_spacing_mm = {0, 0, 0};  ///< of the voxels on which the labels were made

@@ -404,7 +404,7 @@ class Filler {
       improve.threads = options_.threads;
       improve.deadline = deadline_;
       volume::improve_tets(mesh, complex_.points.size(), improve, counts);
-      result.moved_points = volume::relax_surface(mesh, complex_.points.size(), std::min(improve.goal_deg, kRelaxDeg));
+      result.moved_points = volume::relax_surface(mesh, complex_.points.size(), std::min(improve.goal_deg, kRelaxDeg), options_.outside_is_empty);
       const volume::Finding finding = volume::check_filled(mesh, options_.threads);
       if (!finding.message.empty()) fail_internal("the improved tets are invalid: " + finding.message, name);
       improved = ", improved from " + std::to_string(before);

@@ -20,6 +20,7 @@ struct FillOptions {
   std::optional<double> dihedral_deg;  ///< smallest dihedral angle that TetGen refines for, degrees; a target
   std::optional<double> inner_growth;  ///< edges inside are about this times those of the nearby surface; a target
   std::optional<double> improve_deg;   ///< then tets with a dihedral angle below it are improved; unset: as TetGen gives them
+  bool outside_is_empty = true;        ///< false: surfaces that the complex does not have lie there; then points of its outer faces do not move
   int threads = 0;                     ///< 0: all of the machine; the result does not depend on it
   double timeout_s = 600;              ///< of all worker runs together, seconds
   const std::atomic<bool>* given_up = nullptr;  ///< soon after it becomes true the filling ends, as timed_out; unset: never

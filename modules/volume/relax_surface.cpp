@@ -25,7 +25,7 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 class Relaxation {
  public:
-  Relaxation(TetMesh& mesh, std::size_t kept, double goal_deg) : m_(mesh), kept_(kept), goal_(std::sin(goal_deg * M_PI / 180)) {}
+  Relaxation(TetMesh& mesh, std::size_t kept, double goal_deg, bool outer) : m_(mesh), kept_(kept), goal_(std::sin(goal_deg * M_PI / 180)), outer_(outer) {}
 
   std::vector<std::int32_t> run() {
     find_bad();
@@ -168,7 +168,7 @@ class Relaxation {
             if (x != v && x != a && x != b) beside = x;
         }
         if (sides != 1) continue;
-        if (from.z == m_.points[a].z && from.z == m_.points[b].z) return false;  // a flat end
+        if (!outer_ || (from.z == m_.points[a].z && from.z == m_.points[b].z)) return false;  // a flat end
         outer.push_back({a, b, beside, c});
       }
       const double reach = kReach * length;
@@ -194,6 +194,7 @@ class Relaxation {
   TetMesh& m_;
   const std::size_t kept_;
   const double goal_;
+  const bool outer_;
   std::vector<std::pair<double, std::int32_t>> bad_;
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> tets_, faces_;  // of each point near a bad tet
   std::unordered_map<std::int32_t, Vec3> origin_;
@@ -203,6 +204,8 @@ class Relaxation {
 
 }  // namespace
 
-std::vector<std::int32_t> relax_surface(TetMesh& mesh, std::size_t kept, double goal_deg) { return Relaxation(mesh, kept, goal_deg).run(); }
+std::vector<std::int32_t> relax_surface(TetMesh& mesh, std::size_t kept, double goal_deg, bool outer) {
+  return Relaxation(mesh, kept, goal_deg, outer).run();
+}
 
 }  // namespace stackmesh::volume

@@ -14,7 +14,8 @@ namespace stackmesh::volume {
 ///
 /// @param kept points before it are of the surface; those added inside follow
 /// @param goal_deg tets with dihedral angles below it are worked on (the other end as in tet_quality)
+/// @param outer false: points where the outside begins stay, as faces that the mesh does not have may lie there
 /// @return the points before `kept` that moved, ascending
-std::vector<std::int32_t> relax_surface(TetMesh& mesh, std::size_t kept, double goal_deg);
+std::vector<std::int32_t> relax_surface(TetMesh& mesh, std::size_t kept, double goal_deg, bool outer);
 
 }  // namespace stackmesh::volume

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "blocks.h"
+#include "fem/boundary_faces.h"
 #include "fem/element_quality.h"
 #include "fem/label_table.h"
 #include "fem/load_case.h"
@@ -106,6 +107,26 @@ TEST(NameSets, ALoosePieceKeepsItsOwnPatchHoweverSmall) {
   const SolverModel m = name_sets(crumb, {{1, "wall"}}, options);
   EXPECT_EQ(faces_of(m, "wall_outer_1"), 2u * 4 * 100);
   EXPECT_EQ(faces_of(m, "wall_outer_2"), 12u);
+}
+
+TEST(NameSets, AVoidsWallIsASetOfItsOwn) {
+  // The cup again, and what its faces on the hole say of it: label 7 lies there, and no tet has it.
+  const auto is_hole = [](int i, int j, int k) { return k > 0 && i > 0 && i < 3 && j > 0 && j < 3; };
+  TetMesh cup = block(4, 4, 3, {1, 1, 1}, [&](int i, int j, int k) { return is_hole(i, j, k) ? 0 : j < 2 ? 1 : 3; });
+  for (const BoundaryFace& f : boundary_faces(cup)) {
+    const Vec3 out = f.centre + 0.3 * f.normal;
+    const bool hole = out.z < 3 && is_hole(static_cast<int>(std::floor(out.x)), static_cast<int>(std::floor(out.y)), static_cast<int>(std::floor(out.z)));
+    if (f.out == 0) cup.faces.push_back({f.v, f.in, hole ? 7 : 0});
+  }
+  const SolverModel m = name_sets(cup, {{1, "wall"}, {3, "septum"}, {7, "blood"}}, {});
+  ASSERT_EQ(m.labels.size(), 2u);
+  EXPECT_EQ(faces_of(m, "wall_inner_blood"), 2u * (4 * 2 + 2));
+  EXPECT_EQ(faces_of(m, "septum_inner_blood"), 2u * (4 * 2 + 2));
+  EXPECT_EQ(faces_of(m, "inner_blood"), 2u * (4 * 2 * 2 + 4));
+  EXPECT_EQ(faces_of(m, "wall_outer"), 2u * (8 + 2 * 2 * 3 + 4 * 3 + 8 - 2));
+  EXPECT_EQ(faces_of(m, "wall_to_septum"), faces_of(m, "septum_to_wall"));
+  for (InterfaceTriangle& f : cup.faces) f.above = f.above == 7 ? 2 : 0;
+  EXPECT_EQ(faces_of(name_sets(cup, {{1, "wall"}, {3, "septum"}}, {}), "wall_inner_2"), 2u * (4 * 2 + 2));  // no name: its number
 }
 
 TEST(NameSets, RoundEndHasNoCap) {

@@ -45,6 +45,19 @@ TEST_F(StructureSet, IsReadInEveryEncoding) {
   EXPECT_EQ(row(mesh(latin), 1).at("name"), "H\u00fcfte");
 }
 
+TEST_F(StructureSet, NamesInTheCharacterSetsOfTheFarEastAreDecoded) {
+  DRAWN(japanese, "japanese");
+  const Json j = mesh(japanese);
+  EXPECT_EQ(row(j, 1).at("name"), "左肺");
+  EXPECT_EQ(row(j, 2).at("name"), "ｼﾝｿﾞｳ heart");
+  EXPECT_EQ(row(j, 3).at("name"), "本");
+  mesh(japanese, {"--label", "左肺"});
+  DRAWN(korean, "korean");
+  EXPECT_EQ(row(mesh(korean), 1).at("name"), "왼쪽 폐");
+  DRAWN(chinese, "chinese");
+  EXPECT_EQ(row(mesh(chinese), 1).at("name"), "左肺");
+}
+
 TEST_F(StructureSet, ContoursInsideOthersAreHolesAndIslands) {
   DRAWN(ring, "ring");
   const Json r = mesh(ring);

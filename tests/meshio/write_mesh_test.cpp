@@ -209,7 +209,9 @@ TEST(WriteVolume, DeckSetNamesAreLegalAndDistinct) {
 TEST(WriteVolume, RefusesADeckWhoseInterfaceIsNotMadeOfTetFaces) {
   AtomicFiles files;
   TetMesh mesh = one_tet();
-  mesh.faces[0].below = 5;  // no tet of label 5
+  mesh.faces[0].below = 5;  // no tet of label 5: a void on one side, and then nothing on the other
+  EXPECT_NO_THROW(write_volume(files, temporary("void.inp"), mesh, {}));
+  mesh.faces[0].above = 0;
   EXPECT_THROW(write_volume(files, temporary("bad.inp"), mesh, {}), Error);
   mesh = one_tet();
   mesh.points.push_back({1, 1, 1});

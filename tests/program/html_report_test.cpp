@@ -34,6 +34,18 @@ TEST_F(HtmlReport, ShowsContourInput) {
   opens(out("R.html"));
 }
 
+TEST_F(HtmlReport, IsNamedAfterAllFilesOfItsInput) {
+  const std::string square = "S 2\nv 4 z 0\n{\n0 0\n9 0\n9 9\n0 9\n}\nv 4 z 5\n{\n0 0\n9 0\n9 9\n0 9\n}\n";
+  std::string small = square;
+  for (char& c : small)
+    if (c == '9') c = '3';
+  const std::string epi = "1=" + write("epi.cnt", square), endo = "2=" + write("endo.cnt", small);
+  succeeds({"mesh", epi, endo, "-o", out("a.vtu"), "--report", out("R.html")});
+  EXPECT_NE(read_file(out("R.html")).find("Mesh of epi.cnt and endo.cnt<"), std::string::npos);
+  succeeds({"validate", out("a.vtu"), "--against", epi, endo, "--report", out("R.html")});
+  EXPECT_NE(read_file(out("R.html")).find("a.vtu against epi.cnt and endo.cnt<"), std::string::npos);
+}
+
 TEST_F(HtmlReport, ShowsTheSolverModelOfLabelsAndOfAGivenMesh) {
   const std::string law = write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
       "labels": {"*": {"E_MPa": 1234, "poisson": 0.3}}, "load_case": {"fixed": [{"set": "cap_low"}], "loaded": [{"set": "cap_high", "force_N": [0, 0, -321]}]}})");

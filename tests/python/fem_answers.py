@@ -126,6 +126,13 @@ def main():
         need(len(p) > len(second.points), "no node is there twice")
         other = second.fields["DISP"][twin, :3]
         close(u, other, 2e-5 * np.abs(other).max(), "displacement")
+    elif what == "hung":  # held by its upper end, pressed from inside
+        force, smallest, largest = numbers
+        held = p[:, 2] > p[:, 2].max() - 1e-6
+        close(first.fields["FORC"][held].sum(axis=0)[:3], (0, 0, force), 0.03 * force, "force on the support")
+        size = np.linalg.norm(u, axis=1).max()
+        print(f"largest displacement {size:.4g} mm")
+        need(smallest < size < largest, f"largest displacement {size}")
     elif what == "balance":
         force, smallest, largest = numbers
         balance(first, force)

@@ -151,6 +151,12 @@ def case(name, path):
         write(path, [structure("Box", box(10, -40, 20))], syntax=ImplicitVRLittleEndian)
     elif name == "bare":  # without preamble and file meta information
         write(path, [structure("Box", box(10, -40, 20))], syntax=ImplicitVRLittleEndian, preamble=False)
+    elif name == "japanese":  # the last character's second byte is a backslash
+        write(path, [structure(n, box(30 * i, 0, 10)) for i, n in enumerate(["左肺", "ｼﾝｿﾞｳ heart", "本"])], charset=["ISO 2022 IR 13", "ISO 2022 IR 87"])
+    elif name == "korean":
+        write(path, [structure(n, box(30 * i, 0, 10)) for i, n in enumerate(["왼쪽 폐", "CTV1"])], charset=["", "ISO 2022 IR 149"])
+    elif name == "chinese":
+        write(path, [structure(n, box(30 * i, 0, 10)) for i, n in enumerate(["左肺", "CTV1"])], charset=["", "ISO 2022 IR 58"])
     elif name == "latin":
         write(path, [structure("H\u00fcfte", box(0, 0, 20))], charset="ISO_IR 100")
     elif name == "ring":  # inner contours by nesting: a hole, and an island in it

@@ -1,10 +1,12 @@
 // Drawn contours: what was drawn is what comes out.
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "checks.h"
 #include "pipeline/virtual_sections.h"
 #include "stitch/polygons.h"
+#include "validate/boundaries.h"
 
 namespace stackmesh {
 namespace {
@@ -236,7 +238,11 @@ std::vector<ContourFile> nested_discs(unsigned seed, double& thinnest) {
 TEST(NestedStacks, WhatLiesInsideStaysInside) {
   const char* asked = std::getenv("STACKMESH_NESTED_STACKS");
   const unsigned count = asked ? static_cast<unsigned>(std::atoi(asked)) : 80;
-  for (unsigned seed = 0; seed < count; ++seed) {
+  const char* from = std::getenv("STACKMESH_NESTED_FROM");
+  std::vector<unsigned> seeds;
+  for (unsigned seed = from ? static_cast<unsigned>(std::atoi(from)) : 0; seed < count; ++seed) seeds.push_back(seed);
+  if (asked == nullptr) seeds.push_back(1889);  // a ring that outgrows its wall
+  for (const unsigned seed : seeds) {
     double thinnest = 0;
     std::vector<ContourFile> files = nested_discs(seed, thinnest);
     const int levels = static_cast<int>(files.size());
@@ -265,6 +271,31 @@ TEST(NestedStacks, WhatLiesInsideStaysInside) {
       EXPECT_EQ(l.components, one_file ? (levels + 1) / 2 : 1) << "seed " << seed << " label " << l.label << " of " << levels << (one_file ? " in one file" : "") << (caps == Caps::flat ? " flat" : " round") << " per gap " << per_gap.value_or(-1);
     }
   }
+}
+
+TEST(NestedStacks, ANestThatGrowsByMoreThanItsWallsStaysOne) {
+  // A ring and a disc in it, drawn as one label; the next ring lies wholly outside of this one, the next disc beneath it.
+  const auto nest = [](double r) { return std::vector{disc(0, 0, r), disc(0, 0, r - 2), disc(0, 0, r - 4)}; };
+  for (const bool grows : {true, false})
+    for (const int per_gap : {0, 1}) {
+      const Made m = make({file_of(1, every(6, 4), [&](double z) { return nest((z < 9) == grows ? 18 : 24); })}, {}, per_gap, Caps::flat);
+      EXPECT_TRUE(m.warnings.empty());
+      EXPECT_EQ(surface_of(m.check, 1).genus, 1) << grows << per_gap;
+      EXPECT_EQ(surface_of(m.check, 1).components, 2) << grows << per_gap;
+      const Boundaries pieces = find_boundaries(m.result.complex, 1);
+      std::map<std::int32_t, std::array<double, 2>> heights;  // of a piece
+      for (std::size_t t = 0; t < pieces.piece.size(); ++t)
+        for (const std::int32_t piece : pieces.piece[t])
+          if (piece >= 0)
+            for (const std::int32_t v : m.result.complex.triangles[t].v) {
+              auto& z = heights.insert({piece, {1e300, -1e300}}).first->second;
+              z = {std::min(z[0], m.result.complex.points[v].z), std::max(z[1], m.result.complex.points[v].z)};
+            }
+      for (const auto& [piece, z] : heights) EXPECT_EQ(z, (std::array<double, 2>{0, 18})) << "the ring goes on as a ring, the disc as a disc; " << grows << per_gap;
+    }
+  // Where the levels are not the same, what overlaps goes on: a ring and the disc in it, both beneath one solid.
+  const Made joined = make({file_of(1, every(6, 4), [&](double z) { return z < 9 ? nest(18) : std::vector{disc(0, 0, 17)}; })}, {}, 1, Caps::round);
+  EXPECT_EQ(surface_of(joined.check, 1).components, 1);
 }
 
 TEST(DrawnShapes, HaveTheirVolumeGenusAndEnds) {
