@@ -247,6 +247,7 @@ class Enhancement {
       s.edge_length_mm = kAim * *o_.edge_length_mm;
       s.edge_min_mm = std::min(0.5 * o_.pixel_mm, *s.edge_length_mm);
     }
+    s.thin_min_mm = std::max(s.edge_min_mm, o_.pixel_mm);
     return s;
   }
 

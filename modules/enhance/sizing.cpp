@@ -152,7 +152,7 @@ class Sizing {
     const double reach = std::min(mean / static_cast<double>(count), o_.wall_reach_mm);
     const std::vector<double>&thin = o_.wall_mm, &shell = o_.shell_mm;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
-      const double least = std::min(o_.edge_min_mm, size_[v]);
+      const double least = std::min(o_.thin_min_mm, size_[v]);
       if (thin[v] < reach) size_[v] = std::clamp(kAcross * thin[v], least, size_[v]);
       size_[v] = std::min(size_[v], 0.5 * shell[v]);
     });
@@ -199,7 +199,7 @@ class Sizing {
       for (std::int32_t t : mesh_.star[v])
         for (std::int32_t l : mesh_.sides(mesh_.triangles[t].patch)) least = std::min(least, part[l]);
       if (least < 1)
-        size_[v] = std::clamp(chord(radius[v], least * std::min(thin[v], 2 * radius[v])), std::min(o_.edge_min_mm, size_[v]), size_[v]);
+        size_[v] = std::clamp(chord(radius[v], least * std::min(thin[v], 2 * radius[v])), std::min(o_.thin_min_mm, size_[v]), size_[v]);
     });
   }
 

@@ -12,6 +12,7 @@ struct SizingOptions {
   std::map<Label, double> label_edge_mm;  ///< per label; where labels meet the smaller counts
   double deviation_mm = 0.5;              ///< by curvature: largest distance of an edge from the surface
   double edge_min_mm = 1, edge_max_mm = 10;
+  double thin_min_mm = 1;                ///< walls and what bulges make edges no shorter than this
   std::map<Label, double> label_max_mm;  ///< by curvature: largest length on a label, instead of edge_max_mm
   double gradation = 1.3;                ///< lengths of neighbouring edges differ by at most this factor
   std::vector<double> shell_mm;  ///< what `shell_sizes` says of the vertices
