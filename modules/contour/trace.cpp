@@ -243,7 +243,8 @@ class SliceTracer {
   GridPoint displaced(const FairedLabels::Corner& c) const {
     const auto units = [&](float d) {
       constexpr float most = 0.498F;
-      return 2 * static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * (kGridPerPixel / 2)));  // even: edges have a middle
+      const int unit = degree(c.x, c.y) > 2 ? 2 : 1;  // even at junctions: an edge between two of them has its middle on the grid
+      return unit * static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * (kGridPerPixel / unit)));
     };
     return {c.x * kGridPerPixel + units(c.dx), c.y * kGridPerPixel + units(c.dy)};
   }

@@ -9,7 +9,7 @@
 namespace stackmesh {
 
 struct RemeshOptions {
-  int rounds = 3;               ///< of split, collapse, flip, relocate
+  int rounds = 4;               ///< of split, collapse, flip, relocate
   int fit_passes = 6;                     ///< of the least-squares fit to the reference
   int finish_sweeps = 6;        ///< over the worst triangles
   double good_angle_deg = 32;   ///< triangles below are worked on at the end

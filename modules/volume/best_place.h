@@ -11,6 +11,9 @@ struct FanTet {
   Vec3 b, c, d;
 };
 
+/// The quality (tet_quality) of the fan's worst tet with its point at p; not looked for further once below `stop`.
+double fan_quality(const std::vector<FanTet>& fan, const Vec3& p, double stop);
+
 /// Climbs from p along the common gradient of the fan's worst tets [freitag1997].
 /// @param quality of the fan with its point at p (tet_quality of the worst tet); then at the place returned
 /// @param enough tets better than it do not count

@@ -17,9 +17,10 @@ constexpr double kRadians = 3.14159265358979323846 / 180;
 
 /// Tets below it are worked on longer.
 constexpr double kWorstDeg = 14;
-constexpr int kSearchRounds = 4;
+constexpr int kSearchRounds = 2;
 constexpr int kMostTries = 60;  // of the search, for each place
-constexpr std::size_t kAllTries = 2000;
+constexpr std::size_t kAllTries = 2000, kAllTets = 150000;  // of all tries together; a try costs what its tets do
+constexpr std::size_t kLargestPlace = 4000;  // tets: where bad ones hang together over more, the surface is to blame
 
 class Improver {
  public:
@@ -179,9 +180,12 @@ void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options
   // The fewer are left, the longer each is searched for.
   for (int round = 0; round < kSearchRounds; ++round) {
     const std::vector<std::int32_t> worst = grow(mesh, points_below(kWorstDeg, [](const auto&) { return true; }), 3, &count);
-    const int tries = count == 0 ? 0 : std::min(kMostTries, static_cast<int>(kAllTries / count));
-    if (tries == 0) break;
+    const auto size = static_cast<std::size_t>(std::count_if(worst.begin(), worst.end(), [](std::int32_t piece) { return piece >= 0; }));
+    const int tries = count == 0 ? 0 : std::min({kMostTries, static_cast<int>(kAllTries / count), static_cast<int>(kAllTets / size)});
+    if (tries == 0 || size / count > kLargestPlace) break;
+    const std::size_t before = counts.searched;
     change(worst, count, [&](ImproveMesh& work, ImproveCounts& done) { search(work, options, tries, done); });
+    if (counts.searched == before) break;
   }
 }
 

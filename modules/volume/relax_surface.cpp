@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -14,7 +15,9 @@ namespace stackmesh::volume {
 namespace {
 
 constexpr double kReach = 0.15;     // of the mean length of the surface's edges at a point: how far it may go
+constexpr double kVolumeShare = 1e-3;  // of a label's volume: how much it may change in all
 constexpr int kPasses = 12;
+constexpr std::size_t kFew = 100;   // tets, or one in a thousand, are worked on at most
 constexpr double kGain = 1e-3;      // what a move must gain at least
 constexpr double kNarrow_deg = 20;  // triangles do not get narrower than this, unless one at the point was
 
@@ -29,8 +32,14 @@ class Relaxation {
 
   std::vector<std::int32_t> run() {
     find_bad();
+    // A mesh that is bad in many places is no matter of a few points: only its worst tets are worked on.
+    if (const std::size_t most = std::max(kFew, m_.tets.size() / 1000); bad_.size() > most) {
+      goal_ = bad_[most].first;
+      bad_.resize(most);
+    }
     if (bad_.empty()) return {};
     filled_.insert(m_.labels.begin(), m_.labels.end());
+    volumes_ = tet_volumes(m_);
     find_stars();
     for (int pass = 0; pass < kPasses && !bad_.empty(); ++pass) {
       bool any = false;
@@ -125,6 +134,19 @@ class Relaxation {
     return true;
   }
 
+  static double volume(const FanTet& t, const Vec3& p) { return dot(t.b - p, cross(t.c - p, t.d - p)) / 6; }
+
+  /// Moves v, unless a label's volume would change by more than its share with all that moved before.
+  bool keep_volumes(std::int32_t v, const Vec3& to, const std::vector<std::int32_t>& tets) {
+    std::map<Label, double> change;
+    for (std::size_t i = 0; i < tets.size(); ++i) change[m_.labels[tets[i]]] += volume(fan_[i], to) - volume(fan_[i], m_.points[v]);
+    for (const auto& [label, mm3] : change)
+      if (std::abs(changed_[label] + mm3) > kVolumeShare * volumes_.at(label).mm3) return false;
+    for (const auto& [label, mm3] : change) changed_[label] += mm3;
+    m_.points[v] = to;
+    return true;
+  }
+
   bool move(std::int32_t v) {
     const auto tets = tets_.find(v);
     if (tets == tets_.end()) return false;
@@ -182,24 +204,31 @@ class Relaxation {
         return true;
       };
       to = best_place(fan_, from, after, goal_, allowed);
-      if (after > before && !keeps_apart(v, to, outer)) return false;
+      // Where other faces are in the way, a part of the way.
+      const Vec3 way = to - from;
+      for (double share = 1; after > before && !keeps_apart(v, to, outer); share /= 2) {
+        if (share < 0.1) return false;
+        to = from + (share / 2) * way;
+        after = allowed(to) ? fan_quality(fan_, to, before) : before;
+      }
     }
     if (after <= before + kGain * std::abs(before)) return false;
     for (const FanTet& t : fan_)
       if (orientation(to, t.b, t.c, t.d) <= 0) return false;
-    m_.points[v] = to;
-    return true;
+    return faces == faces_.end() ? (m_.points[v] = to, true) : keep_volumes(v, to, tets->second);
   }
 
   TetMesh& m_;
   const std::size_t kept_;
-  const double goal_;
+  double goal_;
   const bool outer_;
   std::vector<std::pair<double, std::int32_t>> bad_;
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> tets_, faces_;  // of each point near a bad tet
   std::unordered_map<std::int32_t, Vec3> origin_;
   std::vector<FanTet> fan_;
   std::set<Label> filled_;
+  std::map<Label, Volume> volumes_;
+  std::map<Label, double> changed_;  // mm3
 };
 
 }  // namespace

@@ -148,7 +148,7 @@ TEST_F(Usage, HelpTellsTheDefaults) {
   const std::string help = succeeds({"mesh", "--help"}).out;
   for (const char* text :
        {"--band FLOAT=0.5", "--gradation FLOAT=1.3", "--snap FLOAT=0", "--caps TEXT=auto",
-        "--axis TEXT=auto", "--space TEXT=lps", "--interpolate TEXT=auto", "=1000000", "=600", "=5"})
+        "--axis TEXT=auto", "--space TEXT=lps", "--interpolate TEXT=auto", "at most 150,000", "=600", "=5"})
     EXPECT_NE(help.find(text), std::string::npos) << text << " is not in: " << help;
 }
 
