@@ -4,13 +4,12 @@
 #include <vector>
 
 #include "contour/components.h"
+#include "contour/extract.h"
 #include "model/faired_labels.h"
 #include "model/slices.h"
 #include "model/stack.h"
 
 namespace stackmesh {
-
-constexpr std::int32_t kGridPerPixel = 1024;  ///< grid units in a pixel
 
 /// A vertex of a crack contour: the pixel corner (x, y), and where it is drawn.
 struct CrackVertex {

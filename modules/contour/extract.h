@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "model/stack.h"
 
 namespace stackmesh {
+
+constexpr std::int32_t kGridPerPixel = 1024;  ///< grid units in a pixel
 
 /// The stacking axis of a volume.
 enum class StackAxis { automatic, x, y, z };

@@ -27,9 +27,9 @@ struct Box {
   }
 };
 
-// Steps along the cracks: +x, +y, -x, -y.
 constexpr std::int32_t kQuarter = kGridPerPixel / 4;
 
+// Steps along the cracks: +x, +y, -x, -y.
 constexpr std::array<int, 4> kStepX = {1, 0, -1, 0}, kStepY = {0, 1, 0, -1};
 
 class SliceTracer {
@@ -241,9 +241,9 @@ class SliceTracer {
   }
 
   GridPoint displaced(const FairedLabels::Corner& c) const {
+    const int unit = degree(c.x, c.y) > 2 ? 2 : 1;  // even at junctions: an edge between two of them has its middle on the grid
     const auto units = [&](float d) {
       constexpr float most = 0.498F;
-      const int unit = degree(c.x, c.y) > 2 ? 2 : 1;  // even at junctions: an edge between two of them has its middle on the grid
       return unit * static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * (kGridPerPixel / unit)));
     };
     return {c.x * kGridPerPixel + units(c.dx), c.y * kGridPerPixel + units(c.dy)};

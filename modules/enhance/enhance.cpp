@@ -19,9 +19,9 @@ namespace {
 
 constexpr double kTriangleLimit = 50e6;
 // Measured: 1.9 tetrahedra a triangle in a thin skull, 3 to 4 in a heart, 9.5 in lungs with fine triangles.
+constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
 // Without any size asked for: tetrahedra of one label, for each further one, and at most.
 constexpr std::size_t kUsualTets = 150000, kMoreTets = 50000, kMostTets = 1000000;
-constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
 // The edges that come out scatter about 0.95 of what the remesher aims at.
 constexpr double kAim = 1.05;
 // Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.

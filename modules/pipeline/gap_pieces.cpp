@@ -4,13 +4,12 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "contour/extract.h"
 #include "interpolate/section_raster.h"
 #include "model/slices.h"
 
 namespace stackmesh {
 namespace {
-
-constexpr std::int32_t kGridPerPixel = 1024;
 
 /// The runs of labels of a few slices, and which of them hang together.
 class Pieces {

@@ -164,8 +164,7 @@ class Relaxation {
       before = std::min(before, quality_of(t));
     }
     const Vec3 from = m_.points[v];
-    const auto [origin, fresh] = origin_.emplace(v, from);
-    const Vec3 start = origin->second;
+    const Vec3 start = origin_.emplace(v, from).first->second;
     const auto faces = faces_.find(v);
     double after = before;
     Vec3 to;

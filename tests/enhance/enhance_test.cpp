@@ -288,7 +288,9 @@ TEST(EnhanceComplex, ALongerEdgeLengthNeverMakesMoreTriangles) {
     o.pixel_mm = 1;
     o.edge_length_mm = length;
     const std::size_t now = enhance(c, o).complex.triangles.size();
-    if (before != 0) EXPECT_LE(static_cast<double>(now), 1.02 * static_cast<double>(before)) << length;
+    if (before != 0) {
+      EXPECT_LE(static_cast<double>(now), 1.02 * static_cast<double>(before)) << length;
+    }
     before = now;
   }
   EXPECT_LT(before, 300U);
