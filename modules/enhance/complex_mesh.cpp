@@ -482,15 +482,27 @@ std::vector<std::int32_t> ComplexMesh::disc_behind(const std::array<std::int32_t
   return disc;
 }
 
-void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc, const std::array<std::int32_t, 3>& loop) {
-  std::array<std::int32_t, 3> v = loop;
-  for (std::int32_t t : disc)
-    if (runs(triangles[t].v, v[1], v[0])) std::swap(v[0], v[1]);
-  for (std::int32_t t : disc)
+void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc, std::vector<std::array<std::int32_t, 3>> filling) {
+  // All of the filling runs one way round: a side that it shares with the disc tells which.
+  const auto shared = [&](const std::array<std::int32_t, 3>& f, int k, bool back) {
+    return std::any_of(disc.begin(), disc.end(), [&](std::int32_t t) {
+      return back ? runs(triangles[t].v, f[(k + 1) % 3], f[k]) : runs(triangles[t].v, f[k], f[(k + 1) % 3]);
+    });
+  };
+  bool turned = false;
+  for (const auto& f : filling)
+    for (int k = 0; k < 3; ++k) turned = turned || (shared(f, k, true) && !shared(f, k, false));
+  const std::int32_t patch = triangles[disc[0]].patch;
+  for (std::int32_t t : disc) {
     for (std::int32_t x : triangles[t].v) drop(star[x], t);
-  for (std::size_t i = 1; i < disc.size(); ++i) triangles[disc[i]].patch = -1;
-  triangles[disc[0]].v = v;
-  for (std::int32_t x : v) star[x].push_back(disc[0]);
+    triangles[t].patch = -1;
+  }
+  for (std::size_t i = 0; i < filling.size(); ++i) {
+    auto& f = filling[i];
+    if (turned) std::swap(f[0], f[1]);
+    triangles[disc[i]] = {f, patch};
+    for (std::int32_t x : f) star[x].push_back(disc[i]);
+  }
 }
 
 void ComplexMesh::add_ridge(std::int32_t a, std::int32_t b) {

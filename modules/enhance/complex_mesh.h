@@ -103,8 +103,9 @@ class ComplexMesh {
   /// The triangles of one patch on the side of `start` of the loop of edges a b c: a disc with free vertices only within. Empty
   /// where they are not one, or more than `most`.
   std::vector<std::int32_t> disc_behind(const std::array<std::int32_t, 3>& loop, std::int32_t start, std::size_t most) const;
-  /// Puts the triangle of the loop in the place of such a disc; it gets the number of the disc's first.
-  void replace_disc(const std::vector<std::int32_t>& disc, const std::array<std::int32_t, 3>& loop);
+  /// Puts triangles over the same loop of edges, no more than the disc has, in its place; they get the numbers of the disc's
+  /// first and its direction.
+  void replace_disc(const std::vector<std::int32_t>& disc, std::vector<std::array<std::int32_t, 3>> filling);
 
   /// Makes an edge a ridge (no-op if it is a curve edge already).
   void add_ridge(std::int32_t a, std::int32_t b);

@@ -67,12 +67,14 @@ class Enhancement {
     wall_ = wall_thickness(mesh, wall_reach_, o_.threads);
     if (o_.faired != nullptr) {
       faired_ = ComplexMesh(*o_.faired, 1e300, o_.threads);
-      settle(mesh);
+      faired_bends_ = surface_bends(*faired_, o_.threads);
+      reference_.emplace(mesh, reference_cell_mm(), o_.threads, &*faired_);
+      bend_ = faired_places(mesh).bend;
     } else if (o_.smooth_passes > 0) {
       smooth_mesh(mesh);
     }
     progress_.advance(0.25);
-    const std::vector<Vec3> smoothed = mesh.points;  // smoothing only moves points
+    std::vector<Vec3> smoothed = mesh.points;  // smoothing only moves points
     if (o_.remesh) {
       remesh_mesh(mesh);
       if (stands("enhanced", mesh)) {
@@ -81,6 +83,11 @@ class Enhancement {
         progress_.advance(1);
         return std::move(result_);
       }
+    }
+    if (o_.faired != nullptr) {
+      ComplexMesh fine(stitched_, 4 * o_.pixel_mm * o_.pixel_mm, o_.threads, o_.inner_caps);
+      settle(fine);
+      smoothed = std::move(fine.points);
     }
     if (o_.smooth_passes > 0 || o_.faired != nullptr) {
       InterfaceComplex moved = stitched_;
@@ -170,27 +177,32 @@ class Enhancement {
     return 1.5 * step;
   }
 
-  /// Draws the stitched vertices to the faired interfaces.
-  void settle(ComplexMesh& mesh) {
-    reference_.emplace(mesh, reference_cell_mm(), o_.threads, &*faired_);  // what it keeps of the mesh does not move here
-    const Reference& reference = *reference_;
+  /// The nearest places on the faired interfaces of all vertices that may go there, and how much the interfaces bend there.
+  struct FairedPlaces {
+    std::vector<Vec3> to;
+    std::vector<double> bend;  ///< -1: not known
+  };
+  FairedPlaces faired_places(const ComplexMesh& mesh) const {
     const double reach = 2 * std::max(o_.pixel_mm, o_.gap_mm);
-    std::vector<Vec3> to = mesh.points;
-    const std::vector<double> bends = surface_bends(*faired_, o_.threads);
-    bend_.assign(to.size(), -1);
-    for_each_index(to.size(), o_.threads, [&](std::size_t n) {
+    FairedPlaces out{mesh.points, std::vector<double>(mesh.points.size(), -1)};
+    for_each_index(out.to.size(), o_.threads, [&](std::size_t n) {
       const auto v = static_cast<std::int32_t>(n);
       if (mesh.star[v].empty() || mesh.is_fixed(v) || mesh.flat[v]) return;
       if (!mesh.curve[v].empty()) {
-        if (const auto foot = reference.nearest_on_curve(to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), reach)) to[v] = *foot;
-      } else if (const auto foot = reference.nearest(to[v], mesh.triangles[mesh.star[v][0]].patch, reach, -1, 0)) {
-        to[v] = foot->point;
-        if (reference.is_faired(foot->face)) {
-          bend_[v] = 0;
-          for (std::int32_t w : faired_->triangles[foot->triangle].v) bend_[v] += bends[w] / 3;
-        }
+        if (const auto foot = reference_->nearest_on_curve(out.to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), reach)) out.to[v] = *foot;
+      } else if (const auto foot = reference_->nearest(out.to[v], mesh.triangles[mesh.star[v][0]].patch, reach, -1, 0)) {
+        out.to[v] = foot->point;
+        if (!reference_->is_faired(foot->face)) return;
+        out.bend[v] = 0;
+        for (std::int32_t w : faired_->triangles[foot->triangle].v) out.bend[v] += faired_bends_[w] / 3;
       }
     });
+    return out;
+  }
+
+  /// Draws the vertices to the faired interfaces.
+  void settle(ComplexMesh& mesh) {
+    std::vector<Vec3> to = faired_places(mesh).to;
     const double least = kSettled * std::min(o_.pixel_mm, o_.gap_mm);
     for (std::size_t v = 0; v < to.size(); ++v)
       if (norm(to[v] - mesh.points[v]) < least) to[v] = mesh.points[v];
@@ -200,7 +212,6 @@ class Enhancement {
     const SmoothingResult r = move_guarded(mesh, to, keep, o_.threads);
     result_.counts.smoothed = r.moved;
     result_.counts.held_back = r.held_back;
-    faired_.reset();
   }
 
   SizingOptions sizing(const ComplexMesh& mesh) {
@@ -335,6 +346,7 @@ class Enhancement {
     r.deviation_mm = o_.edge_length_mm ? std::max(0.5 * o_.pixel_mm, 0.4 * *o_.edge_length_mm) : result_.coarsened * result_.coarsened * sizes.deviation_mm;
     r.shortest_mm = std::min(1.0, result_.coarsened) * sizes.edge_min_mm;
     r.gradation = o_.gradation;
+    if (o_.faired != nullptr) r.when_coarse = [&] { settle(mesh); };  // a coarse mesh has fewer vertices to move
     const RemeshCounts c = remesh(mesh, size, reference, r, progress_);
     result_.counts.splits = c.splits;
     result_.counts.collapses = c.collapses;
@@ -410,7 +422,8 @@ class Enhancement {
   std::vector<double> wall_;         // and how thick its walls are there, up to the reach
   double wall_reach_ = 0;
   std::map<Label, ShellCount> shells_;  // of each label
-  std::optional<ComplexMesh> faired_;   // where the interfaces run, until the mesh is drawn there
+  std::optional<ComplexMesh> faired_;   // where the interfaces run
+  std::vector<double> faired_bends_;    // at its vertices
   std::optional<Reference> reference_;  // the surface that the remeshed one stands for
   SurfaceSamples samples_;  // of the stitched surface
 };

@@ -154,7 +154,7 @@ bool LocalOperations::collapse(std::int32_t gone, std::int32_t kept, double floo
   Change c;
   c.removed = &removed_;
   c.added = &added_;
-  c.clearance_mm = clearance_rel() * asked_length;
+  c.clearance_mm = clearance_rel() * std::min(asked_length, longest_old);
   if (!guard.allows(c)) return false;
   mesh_.collapse(gone, kept);
   guard.update(removed_);
@@ -295,7 +295,7 @@ bool LocalOperations::cut_tip(std::int32_t a, std::int32_t b) {
       change.added = &added_;
       change.clearance_mm = clearance_rel() * asked(a, b);
       if (!guard.allows(change)) continue;
-      mesh_.replace_disc(removed_, added_[0]);
+      mesh_.replace_disc(removed_, added_);
       guard.update(removed_);
       ++counts.collapses;
       return true;

@@ -37,6 +37,9 @@ class LocalOperations {
   /// A tip that hangs on a loop of three edges, through a and b, becomes one triangle; no part of it may be further from that
   /// than an edge length.
   bool cut_tip(std::int32_t a, std::int32_t b);
+  /// Where the sheet lies in a pleat at the triangle: the pleat goes, the hole gets the triangulation with the largest smallest
+  /// angle. What goes is thinner than 0.3 of the edge length.
+  bool unfold(std::int32_t triangle);
   /// Moves one vertex towards the middle of its neighbours, whatever the angles: it takes folds out.
   bool iron(std::int32_t v);
   /// Moves one vertex to the place near it that makes the smallest angle round it largest.
@@ -67,6 +70,9 @@ class LocalOperations {
   bool move(std::int32_t v, const Vec3& to);  ///< if the block and the guard allow it
   bool crowds(std::int32_t v, const Vec3& to) const;  ///< nearer to a neighbour than it was, and near: thin necks are not to be drawn together
   bool is_speck(std::int32_t v) const;  ///< its sheet, as far as curves, is of few triangles: one vertex could turn it inside out
+  bool may_vanish(std::int32_t v) const;  ///< free within its sheet
+  /// Puts the best triangulation of the loop, seen along the normal, in the place of the region.
+  bool fill_loop(const std::vector<std::int32_t>& region, const std::vector<std::int32_t>& loop, const Vec3& normal);
   int ideal_valence_error(std::int32_t v, int change) const;
 
   double closer_ = 1;

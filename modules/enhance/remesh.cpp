@@ -291,11 +291,12 @@ class Remesher {
     return done;
   }
 
-  /// Moves the vertices of bad triangles, and those next to them, to where the surface is even.
+  /// Moves the vertices of bad triangles, and those next to them, to where the surface is even; pleats that stay are cut out.
   std::size_t iron_bad() {
     std::vector<std::int32_t> all, around;
     const double limit = 0.5 * o_.mend_angle_deg * kDegree;
-    for (std::int32_t t : triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit || is_folded(x); }))
+    const std::vector<std::int32_t> bad = triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit || is_folded(x); });
+    for (std::int32_t t : bad)
       for (std::int32_t v : mesh_.triangles[t].v) {
         all.push_back(v);
         mesh_.neighbours(v, around);
@@ -306,6 +307,8 @@ class Remesher {
     std::size_t done = 0;
     for (int pass = 0; pass < 2; ++pass)
       for (std::int32_t v : all) done += ops_.iron(v);
+    for (std::int32_t t : bad)
+      if (mesh_.alive(t) && (ops_.angle(mesh_.triangles[t].v) < limit || is_folded(t))) done += ops_.unfold(t);
     return done;
   }
 
@@ -453,6 +456,7 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
     join_blocks(mesh, size, hints, blocks);
   };
   for (int i = 0; i < 2; ++i) in_blocks(false, [&](Remesher& r) { r.coarsen(); });
+  if (options.when_coarse) options.when_coarse();
   for (int round = 0; round < options.rounds; ++round) {
     in_blocks(false, [&](Remesher& r) { r.round(round); });
     if (round + 1 < options.rounds && has_long_edges(mesh, size)) in_blocks(true, [](Remesher& r) { r.split_rest(); });

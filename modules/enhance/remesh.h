@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "base/progress.h"
@@ -23,6 +24,7 @@ struct RemeshOptions {
   double most_triangles = 0;    ///< edges that get shorter for the deviation all get longer again beyond it; 0: no limit
   double gradation = 1.3;
   int threads = 0;
+  std::function<void()> when_coarse;  ///< is called once, before the rounds: it may move vertices of the mesh
 };
 
 struct RemeshCounts {

@@ -157,7 +157,7 @@ TEST(EnhanceMending, ATipOnALoopOfThreeEdgesCanBeReplacedByATriangle) {
   }
   EXPECT_EQ(sides, 1);  // the rest of the ball is more than 80 triangles
   ASSERT_EQ(disc.size(), 5u);
-  mesh.replace_disc(disc, loop);
+  mesh.replace_disc(disc, {loop});
   const InterfaceComplex after = mesh.to_complex();
   EXPECT_EQ(after.triangles.size(), before);
   const SurfaceCheck check = check_surface(after);
