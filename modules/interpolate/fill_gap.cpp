@@ -96,7 +96,7 @@ class GapFiller {
   void collect_bodies() {
     const std::vector<Group>& groups = labels_.groups.list;
     const auto field = [&](const Partition& part, std::int32_t id) {
-      return GroupField(part, id, width_, height_, pixel_mm_);
+      return GroupField(part, id, width_, height_, pixel_mm_, gap_.gap_mm);
     };
     const bool one_label = std::all_of(groups.begin() + 1, groups.end(),
                                        [&](const Group& g) { return g.label == groups[1].label; });

@@ -9,6 +9,8 @@ namespace {
 constexpr int kMargin = 3;            // pixels round a group that the spline may reach by overshooting
 constexpr double kFullMotion = 0.05;  // relative gain of overlap from which a group follows its centre fully
 constexpr double kNear = 0.25, kFar = 0.45;  // motion, in widths of the smaller slice: not followed, followed fully
+constexpr double kNoBall_rel = 0.7;  // a slice of so large a share of the area of that before it may be where a body was cut
+constexpr double kNearestEnd = 0.2, kFurthestEnd = 0.95;  // shares of a gap
 
 constexpr double kShortest = 0.25;    // neighbouring gaps count as no shorter than this share of the gap
 
@@ -64,6 +66,64 @@ std::size_t difference(const Field& low, const Field& high, int dx, int dy) {
   return in_low + in_high - 2 * in_both;
 }
 
+/// Pixels of the islands that belong, with what lies in their holes.
+template <class Belongs>
+double enclosed_pixels(const Islands& islands, int width, const Belongs& belongs) {
+  Box box;
+  for (std::int32_t i = 1; i < islands.count(); ++i)
+    if (belongs(i)) box.add(islands.box[i]);
+  if (box.empty()) return 0;
+  const int wide = box.width() + 2, high = box.height() + 2;  // a rim all round, from which the outside is flooded
+  std::vector<std::uint8_t> closed(static_cast<std::size_t>(wide) * high, 0);
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x)
+      closed[static_cast<std::size_t>(y - box.y0 + 1) * wide + (x - box.x0 + 1)] = belongs(islands.of[static_cast<std::size_t>(y) * width + x]);
+  std::vector<std::size_t> open = {0};
+  closed[0] = 1;
+  std::size_t outside = 1;
+  while (!open.empty()) {
+    const std::size_t at = open.back();
+    open.pop_back();
+    const std::size_t x = at % wide, y = at / wide;
+    const auto visit = [&](std::size_t next) {
+      if (closed[next]) return;
+      closed[next] = 1;
+      ++outside;
+      open.push_back(next);
+    };
+    if (x > 0) visit(at - 1);
+    if (x + 1 < static_cast<std::size_t>(wide)) visit(at + 1);
+    if (y > 0) visit(at - wide);
+    if (y + 1 < static_cast<std::size_t>(high)) visit(at + wide);
+  }
+  return static_cast<double>(closed.size() - outside);
+}
+
+/// Where in the gap beyond a slice of this area a ball ends that has the other area a gap before it, as a share of the gap; 0 when the
+/// areas do not say: no slice before, or one that is hardly larger.
+double end_of_ball(double here_mm2, double before_mm2, double gap_mm) {
+  if (!(before_mm2 > 0) || here_mm2 >= kNoBall_rel * before_mm2) return 0;
+  // A plane a height h below the pole of a ball of radius R has the area pi (2 R h - h^2).
+  const double p = (before_mm2 - here_mm2) / M_PI / gap_mm + gap_mm, q = here_mm2 / M_PI;
+  return std::clamp((std::sqrt(p * p + 4 * q) - p) / (2 * gap_mm), kNearestEnd, kFurthestEnd);
+}
+
+/// The share of the gap at which a group ends that only one slice has; 0: not known.
+double where_it_ends(const Partition& part, std::int32_t id, int width, const std::array<double, 2>& pixel_mm, double gap_mm) {
+  const Group& group = part.groups.list[id];
+  const bool up = group.high.empty();  // it ends above the lower slice
+  const Islands &own = up ? part.low : part.high, &next = up ? part.before : part.after;
+  const std::vector<std::int32_t>&of = up ? part.groups.of_low : part.groups.of_high, &members = up ? group.before : group.after;
+  const Box& box = up ? group.low : group.high;
+  const auto goes_on = [&](std::int32_t i) {
+    if (!members.empty()) return std::find(members.begin(), members.end(), i) != members.end();
+    const Box& b = next.box[i];  // a wall that is thinner than what its end moved by lies round it
+    return next.label[i] == group.label && b.x0 <= box.x0 && b.y0 <= box.y0 && b.x1 >= box.x1 && b.y1 >= box.y1;
+  };
+  const double pixel = pixel_mm[0] * pixel_mm[1];
+  return end_of_ball(pixel * enclosed_pixels(own, width, [&](std::int32_t i) { return of[i] == id; }), pixel * enclosed_pixels(next, width, goes_on), gap_mm);
+}
+
 }  // namespace
 
 Partition::Partition(const Gap& gap) {
@@ -104,7 +164,7 @@ GroupField::Slice GroupField::slice(const Islands& islands, int width, const Box
 }
 
 GroupField::GroupField(const Partition& part, std::int32_t id, int width, int height,
-                       const std::array<double, 2>& pixel_mm) {
+                       const std::array<double, 2>& pixel_mm, double gap_mm) {
   const Group& group = part.groups.list[id];
   box_ = group.low;
   box_.add(group.high);
@@ -119,6 +179,7 @@ GroupField::GroupField(const Partition& part, std::int32_t id, int width, int he
   if (group.low.empty() || group.high.empty()) {
     const std::vector<float>& only = slices_[group.low.empty() ? 2 : 1].field.value;
     peak_ = *std::max_element(only.begin(), only.end());
+    if (gap_mm > 0) ends_at_ = where_it_ends(part, id, width, pixel_mm, gap_mm);
     return;
   }
   share_ = share_of_motion();
@@ -158,7 +219,7 @@ void GroupField::blend(double t, double tension, const std::array<double, 2>& ne
   if (!slices_[1].present() || !slices_[2].present()) {
     // A part that ends here: a dome, by default one that closes half way, as its voxels do.
     const int only = slices_[1].present() ? 1 : 2;
-    const double away = (only == 1 ? t : 1 - t) / end_at;
+    const double away = (only == 1 ? t : 1 - t) / (ends_at_ > 0 ? ends_at_ : end_at);
     sunk = peak_ * (away < 1 ? 1 - std::sqrt(1 - away * away) : away);
     w[only] = 1;
   } else {

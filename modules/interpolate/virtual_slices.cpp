@@ -128,6 +128,7 @@ InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int axis,
     std::array<Pixels, 4> slices;
     for (int s = first; s <= last; ++s) slices[s + 1 - static_cast<int>(k)] = crop(volume, from, s, box);
     Gap gap;
+    gap.gap_mm = volume.spacing_mm[axis];
     gap.low = &slices[1];
     gap.high = &slices[2];
     if (k > 0) gap.before = &slices[0];

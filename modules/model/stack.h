@@ -62,6 +62,9 @@ struct Stack {
 /// Signed area (mm2) of a label in a section: the sum over its edges; exact before simplification.
 double label_area_mm2(const Stack& stack, const Section& section, Label label);
 
+/// Area (mm2) within a label's outer loops in a section: what lies in its holes counts as the label.
+double enclosed_area_mm2(const Stack& stack, const Section& section, Label label);
+
 /// The half gap that the first (low) or last section stands for beyond itself, mm; the pixel if there is one section only.
 double end_half_gap_mm(const Stack& stack, bool high);
 

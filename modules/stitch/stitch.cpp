@@ -88,10 +88,19 @@ class StackStitcher {
     const auto& border = high ? stack_.touches_high : stack_.touches_low;
     if (end == (high ? sections() - 1 : 0) && std::find(border.begin(), border.end(), label) != border.end()) return true;
     if (extent.first == extent.last) return false;
-    std::size_t beside = high ? end - 1 : end + 1;  // the next real section
-    while (stack_.sections[beside].interpolated && beside > 0 && beside + 1 < sections()) high ? --beside : ++beside;
-    const double here = label_area_mm2(stack_, stack_.sections[end], label);
-    return here >= options_.flat_area_rel * label_area_mm2(stack_, stack_.sections[beside], label);
+    // By real sections: those between them are interpolated, and shrink before an end.
+    const auto towards_inside = [&](std::size_t i) {
+      const std::size_t other_end = high ? extent.first : extent.last;
+      do {
+        if (i == other_end) return i;
+        high ? --i : ++i;
+      } while (stack_.sections[i].interpolated);
+      return i;
+    };
+    const std::size_t last = stack_.sections[end].interpolated ? towards_inside(end) : end, beside = towards_inside(last);
+    if (last == beside || stack_.sections[beside].interpolated) return false;  // one real section
+    const double here = enclosed_area_mm2(stack_, stack_.sections[last], label);  // a wall ends as what lies in it does
+    return here >= options_.flat_area_rel * enclosed_area_mm2(stack_, stack_.sections[beside], label);
   }
 
   /// The shapes of the ends that may occur between section k - 1 and section k (k == 0, sections(): beyond the stack).

@@ -97,6 +97,32 @@ TEST(Fairing, ThickSlicesAreRoundBetweenTheSlices) {
   EXPECT_LT(f.normal_deg, 7);
 }
 
+/// How far a ball of thick slices reaches, below and above, mm beyond its poles, with what is `inside` it.
+std::array<double, 2> poles_off(double r, double slices_from, double inside) {
+  LabelVolume volume = voxelise(r + 9, {0.8, 0.8, 3}, [=](Vec3 p) { return norm(p) < inside ? 2 : norm(p) < r ? 1 : 0; });
+  const double shift = slices_from - std::remainder(volume.origin_mm.z, 3.0);  // where the slices lie, against the ball
+  volume.origin_mm.z += shift;
+  for (int k = 0, n = 0; k < volume.size[2]; ++k)
+    for (int j = 0; j < volume.size[1]; ++j)
+      for (int i = 0; i < volume.size[0]; ++i, ++n) {
+        const double d = norm(volume.world(i, j, k));
+        volume.voxels[n] = d < inside ? 2 : d < r ? 1 : 0;
+      }
+  double low = 1e9, high = -1e9;
+  for (const Vec3& p : stitch_faired(volume).complex().points) {
+    low = std::min(low, p.z);
+    high = std::max(high, p.z);
+  }
+  return {-r - low, high - r};
+}
+
+TEST(Fairing, ABallOfThickSlicesReachesItsPolesWhereverTheSlicesLie) {
+  // Poles are 0.3 to 2.9 mm beyond the last slice; half a gap would be 1.5 for all.
+  for (double at : {-1.2, -0.8, -0.3, 0.2, 0.7, 1.1})
+    for (double inside : {0.0, 17.0})
+      for (double off : poles_off(20, at, inside)) EXPECT_NEAR(off, 0, 0.55) << "slices from " << at << ", inside " << inside;
+}
+
 TEST(Fairing, AnObliquePlaneWhoseTraceRunsAlongAnAxisHasNoTerraces) {
   const Vec3 u = {0, std::sin(0.5), std::cos(0.5)};
   const LabelVolume volume = voxelise(18, {1, 1, 1}, [&](Vec3 p) { return norm(p - kOff) > 15 ? 0 : dot(p - kOff, u) > 3 ? 2 : 1; });

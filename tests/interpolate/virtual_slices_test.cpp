@@ -153,6 +153,26 @@ TEST(VirtualSlices, IslandWithoutCounterpartEndsAloneAtHalfWay) {
   }
 }
 
+TEST(VirtualSlices, APartThatNarrowsEndsWhereItsAreasSay) {
+  // Slices of a ball of radius 20, 10 mm apart: its poles are 20 - 10 - z0 mm beyond the last slice.
+  for (double z0 : {-4.5, -3.0, 3.0, 4.5})
+    for (double hole : {0.0, 12.0}) {  // a wall round another label ends as what lies in it does
+      const LabelVolume in = shapes(50, 50, 7, 10, [&](double x, double y, int k) {
+        const double r = std::sqrt(std::pow(x - 25, 2) + std::pow(y - 25, 2) + std::pow((k - 3) * 10 + z0, 2));
+        return r < hole ? 2 : r < 20 ? 1 : 0;
+      });
+      const LabelVolume out = interpolated(in, 9).volume;
+      int low = out.size[2], high = 0;
+      for (int k = 0; k < out.size[2]; ++k)
+        if (area(out, k, 1) > 0) {
+          low = std::min(low, k);
+          high = std::max(high, k);
+        }
+      EXPECT_NEAR(low - 30 + z0, -20, 1.5) << z0 << ' ' << hole;
+      EXPECT_NEAR(high - 30 + z0, 20, 1.5) << z0 << ' ' << hole;
+    }
+}
+
 TEST(VirtualSlices, TouchingLabelsLeaveNoGap) {
   // Three sectors of a disc whose borders turn from slice to slice.
   const LabelVolume in = shapes(60, 60, 5, 8, [](double x, double y, int k) {
