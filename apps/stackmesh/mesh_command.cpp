@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -65,7 +66,7 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
   command.add_option("--edge-min", e.edge_min, "smallest edge of --deviation, mm")->check(positive);
   command.add_option("--edge-max", e.edge_max, "largest edge of --deviation, mm")->check(positive);
   command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(number_in(1, 100, "a number from 1 to 100"))->capture_default_str();
-  command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none; each above 5 takes more of the voxels' steps away")->check(CLI::Range(0, 10000))->capture_default_str();
+  command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none; each above 5 takes more of the voxels' steps away (5 is for a --band of up to 0.5 pixel; a wider one has 2 more for each tenth of a pixel)")->check(CLI::Range(0, 10000))->capture_default_str();
   command.add_flag("--no-enhance", e.off, "the stitched surface as it is");
   if (target == Target::surface) command.add_flag("--raw", e.raw, "the stitched surface of the pixels' own outlines, without fairing and enhancement");
   const std::vector<CLI::Option*> of_volumes = {
@@ -88,6 +89,13 @@ std::string text_of(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%g", value);
   return buffer;
+}
+
+/// What was asked for, or the default: more passes for a wider band, whose labels jitter from slice to slice.
+int smoothing_passes(const CLI::App& command, int asked, double band_px) {
+  constexpr double kForEachPixel = 20;  // measured on jittering slices (docs/fidelity.md)
+  if (command.get_option("--smooth")->count() > 0) return asked;
+  return asked + static_cast<int>(std::lround(kForEachPixel * std::max(0.0, band_px - 0.5)));
 }
 
 MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Target target) {
@@ -142,7 +150,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (e.edge_min > 0) o.enhancement.edge_min_mm = e.edge_min;
   if (e.edge_max > 0) o.enhancement.edge_max_mm = e.edge_max;
   o.enhancement.gradation = e.gradation;
-  o.enhancement.smooth_passes = e.smooth;
+  o.enhancement.smooth_passes = smoothing_passes(command, e.smooth, o.sections.band_px);
   // The budget is for sizes that nobody asked for, or for whoever asks for it.
   const bool budget_asked = command.get_option("--target-tets")->count() > 0;
   const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
@@ -163,7 +171,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"min_piece_mm3", o.pieces.min_piece_mm3 ? text_of(*o.pieces.min_piece_mm3) : "unset"},
                     {"interpolate", e.interpolate},
                     {"enhance", o.enhance ? "on" : "off"},
-                    {"smooth", std::to_string(e.smooth)},
+                    {"smooth", std::to_string(o.enhancement.smooth_passes)},
                     {"edge_length_mm", e.edge_length.empty() ? "unset" : e.edge_length},
                     {"deviation_mm", e.deviation > 0 ? text_of(e.deviation) : "default"},
                     {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},
