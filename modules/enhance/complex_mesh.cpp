@@ -37,20 +37,6 @@ bool has(const ShortList& list, std::int32_t x) {
 
 }  // namespace
 
-double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, bc = c - b, ca = a - c;
-  const double l0 = dot(ab, ab), l1 = dot(bc, bc), l2 = dot(ca, ca);
-  const double twice = norm(cross(ab, ca));
-  double d;  // the smallest angle lies opposite the shortest side
-  if (l0 <= l1 && l0 <= l2)
-    d = -dot(bc, ca);
-  else if (l1 <= l2)
-    d = -dot(ca, ab);
-  else
-    d = -dot(ab, bc);
-  return std::atan2(twice, d);
-}
-
 ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads, bool inner_caps) : points(complex.points) {
   std::map<std::pair<Label, Label>, std::int32_t> numbers;
   std::pair<Label, Label> last = {0, 0};  // neighbours in the list mostly have the same pair

@@ -141,8 +141,4 @@ void ComplexMesh::edges_from(std::int32_t a, Visit visit) const {
   for (std::int32_t b : around) visit(b);
 }
 
-/// Smallest angle of a triangle, as its cosine's negative would order it: the sine-free measure used in loops
-/// is the angle itself, radians.
-double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
-
 }  // namespace stackmesh

@@ -99,14 +99,18 @@ bool LocalOperations::fill_loop(const std::vector<std::int32_t>& region, const s
     open.push_back({i, k});
     open.push_back({k, j});
   }
+  // Neither may what goes be far from what comes, nor the other way round.
+  const auto from = [&](const Vec3& p, const std::array<std::int32_t, 3>& t) {
+    return norm(p - nearest_on_triangle(p, mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]));
+  };
+  const double thick = kThickness * size_[loop[0]];
   for (std::int32_t t : region)
-    for (std::int32_t v : mesh_.triangles[t].v) {
-      if (std::find(loop.begin(), loop.end(), v) != loop.end()) continue;
-      double off = 1e300;
-      for (const auto& a : added_)
-        off = std::min(off, norm(mesh_.points[v] - nearest_on_triangle(mesh_.points[v], mesh_.points[a[0]], mesh_.points[a[1]], mesh_.points[a[2]])));
-      if (off > kThickness * size_[v]) return false;
-    }
+    for (std::int32_t v : mesh_.triangles[t].v)
+      if (std::none_of(added_.begin(), added_.end(), [&](const auto& a) { return from(mesh_.points[v], a) <= thick; })) return false;
+  for (const auto& a : added_) {
+    const Vec3 middle = (1 / 3.0) * (mesh_.points[a[0]] + mesh_.points[a[1]] + mesh_.points[a[2]]);
+    if (std::none_of(region.begin(), region.end(), [&](std::int32_t t) { return from(middle, mesh_.triangles[t].v) <= thick; })) return false;
+  }
   removed_ = region;
   Change change;
   change.removed = &removed_;
@@ -133,17 +137,21 @@ bool LocalOperations::unfold(std::int32_t triangle) {
       const double l = norm(area);
       if (!(l > 0)) break;
       const Vec3 normal = (1 / l) * area;
+      const auto along = [&](std::int32_t t) {
+        const Vec3 a = mesh_.area_vector(mesh_.triangles[t].v);
+        return norm(a) > 0 ? dot(a, normal) / norm(a) : -1;
+      };
+      const bool pleated = std::any_of(region.begin(), region.end(), [&](std::int32_t t) { return along(t) < 0; });
       // Vertices of the loop whose triangles face away from it belong to the pleat, the worst first.
       std::int32_t next = -1;
       double worst = 1, beyond = 1;
       for (std::int32_t v : loop)
         for (std::int32_t t : mesh_.star[v]) {
           if (mesh_.triangles[t].patch != mesh_.triangles[triangle].patch) continue;
-          const Vec3 a = mesh_.area_vector(mesh_.triangles[t].v);
-          const double along = norm(a) > 0 ? dot(a, normal) / norm(a) : -1;
-          if (std::find(region.begin(), region.end(), t) == region.end()) beyond = std::min(beyond, along);
-          if (along < worst && may_vanish(v)) {
-            worst = along;
+          const double here = along(t);
+          if (std::find(region.begin(), region.end(), t) == region.end()) beyond = std::min(beyond, here);
+          if (here < worst && may_vanish(v)) {
+            worst = here;
             next = v;
           }
         }
@@ -153,7 +161,7 @@ bool LocalOperations::unfold(std::int32_t triangle) {
       std::sort(vertices.begin(), vertices.end());
       vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
       const std::size_t within = vertices.size() - loop.size();
-      if (region.size() == 2 * within + loop.size() - 2 && beyond > kTurned && fill_loop(region, loop, normal)) return true;
+      if (region.size() == 2 * within + loop.size() - 2 && pleated && beyond > kTurned && fill_loop(region, loop, normal)) return true;
       if (next < 0 || !add_star(mesh_, next, region)) break;
     }
   }

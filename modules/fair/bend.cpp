@@ -50,15 +50,11 @@ class Bender {
       high[v] = packed(net_.high[v]);
     });
     y = x;
-    const float step = options_.order == 2 ? 0.25F : 0.0625F;
+    constexpr float step = 0.25F;
     double momentum = 1;
     std::vector<double> sums((n_ + kRun - 1) / kRun);
     for (int i = 0; i < options_.iterations; ++i) {
       for_each_index(n_, options_.threads, [&](std::size_t v) { bend[v] = difference(y, v) + links_[v].place; }, kRun);
-      if (options_.order == 3) {
-        for_each_index(n_, options_.threads, [&](std::size_t v) { slope[v] = difference(bend, v); }, kRun);
-        for_each_index(n_, options_.threads, [&](std::size_t v) { bend[v] = transposed(slope, v); }, kRun);
-      }
       const double next_momentum = (1 + std::sqrt(1 + 4 * momentum * momentum)) / 2;
       const float ahead = static_cast<float>((momentum - 1) / next_momentum);
       parallel_for(sums.size(), options_.threads, [&](std::size_t run) {

@@ -59,7 +59,6 @@ struct NetOptions {
 Net build_net(const LabelVolume& volume, const StackAxes& axes, const NetOptions& options);
 
 struct BendOptions {
-  int order = 2;            ///< derivatives in the energy: 2 bending, 3 its change
   int iterations = 100;
   int threads = 0;
 };

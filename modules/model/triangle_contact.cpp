@@ -193,6 +193,20 @@ bool triangles_meet(const Corners3& s, const Corners3& t, const SharedCorners& s
   }
 }
 
+double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, bc = c - b, ca = a - c;
+  const double l0 = dot(ab, ab), l1 = dot(bc, bc), l2 = dot(ca, ca);
+  const double twice = norm(cross(ab, ca));
+  double d;  // the smallest angle lies opposite the shortest side
+  if (l0 <= l1 && l0 <= l2)
+    d = -dot(bc, ca);
+  else if (l1 <= l2)
+    d = -dot(ca, ab);
+  else
+    d = -dot(ab, bc);
+  return std::atan2(twice, d);
+}
+
 Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   const double l = dot(d, d);

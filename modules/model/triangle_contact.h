@@ -35,6 +35,9 @@ inline double squared_distance(const Corners3& s, const Corners3& t) { return ne
 /// other.
 double sheet_cosine(const Corners3& s, const Corners3& t, const SharedCorners& shared);
 
+/// Smallest angle of a triangle, radians; 0 for one without area.
+double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Nearest point of a triangle.
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 /// Nearest point of a segment.

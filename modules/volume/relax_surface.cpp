@@ -21,11 +21,6 @@ constexpr std::size_t kFew = 100;   // tets, or one in a thousand, are worked on
 constexpr double kGain = 1e-3;      // what a move must gain at least
 constexpr double kNarrow_deg = 20;  // triangles do not get narrower than this, unless one at the point was
 
-double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto at = [](const Vec3& p, const Vec3& q, const Vec3& r) { return std::atan2(norm(cross(q - p, r - p)), dot(q - p, r - p)); };
-  return std::min({at(a, b, c), at(b, c, a), at(c, a, b)});
-}
-
 class Relaxation {
  public:
   Relaxation(TetMesh& mesh, std::size_t kept, double goal_deg, bool outer) : m_(mesh), kept_(kept), goal_(std::sin(goal_deg * M_PI / 180)), outer_(outer) {}

@@ -5,6 +5,7 @@
 #include "checks.h"
 #include "contour/extract.h"
 #include "enhance/enhance.h"
+#include "enhance/local_operations.h"
 #include "enhance/separate.h"
 #include "enhance_shapes.h"
 #include "stitch/polygons.h"
@@ -163,6 +164,35 @@ TEST(EnhanceMending, ATipOnALoopOfThreeEdgesCanBeReplacedByATriangle) {
   const SurfaceCheck check = check_surface(after);
   EXPECT_EQ(check.open_edges, 0u);
   EXPECT_NEAR(surface_of(check, 1).volume_mm3, surface_of(check_surface(ball(10, 2)), 1).volume_mm3, 1e-9);
+}
+
+TEST(EnhanceMending, APleatIsCutOutAndWhatIsThickStays) {
+  // One vertex of a flat face lies beyond its neighbour, a little above it: three layers. A spike is a part of the body.
+  for (const bool spike : {false, true}) {
+    InterfaceComplex c = cube(20, 20);
+    const auto v = static_cast<std::int32_t>(std::find_if(c.points.begin(), c.points.end(), [](const Vec3& p) { return p.x == 10 && p.y == 10 && p.z == 20; }) - c.points.begin());
+    c.points[v] = spike ? Vec3{10, 10, 23} : Vec3{11.15, 10, 20.05};
+    const double volume = surface_of(check_surface(c), 1).volume_mm3;
+    ASSERT_EQ(check_surface(c).self_intersections, 0u);
+    if (!spike) ASSERT_GT(largest_bend_deg(c), 150);
+    ComplexMesh mesh(c, 1e9);
+    std::vector<double> size(mesh.points.size(), 1);
+    std::vector<std::int32_t> hints(mesh.points.size(), -1);
+    const Reference reference(mesh, 1, 1);
+    const RemeshOptions options;
+    LocalOperations ops(mesh, size, hints, reference, options);
+    ops.guard.rebuild(1);
+    bool done = false;
+    for (std::size_t i = 0; i < mesh.star[v].size() && !done; ++i) done = ops.unfold(mesh.star[v][i]);
+    EXPECT_EQ(done, !spike);
+    const SurfaceCheck check = check_surface(mesh.to_complex());
+    EXPECT_EQ(check.open_edges, 0u);
+    EXPECT_EQ(check.self_intersections, 0u);
+    EXPECT_NEAR(surface_of(check, 1).volume_mm3, done ? 8000 : volume, 1e-9);
+    EXPECT_EQ(check.triangles < c.triangles.size(), done);
+    EXPECT_GE(check.triangles + 4, c.triangles.size());
+    if (done) EXPECT_NEAR(largest_bend_deg(mesh.to_complex()), 90, 1e-9);  // the cube's own edges
+  }
 }
 
 TEST(EnhanceMending, SheetsTooNearArePartedAndNoFurther) {
