@@ -91,8 +91,10 @@ TEST_F(Voids, OfALabelVolumeAreWhatTheyWouldBeFilled) {
   const Json filled = report();
   succeeds({"mesh", file, "--edge-length", "5", "--void", "2", "-o", out("a.vtu"), "--report", out("R.json")});
   const Json hollow = report();
-  for (int label : {1, 2}) EXPECT_NEAR(number(hollow, label, "surface_volume_mm3"), number(filled, label, "surface_volume_mm3"), 1e-6) << label;
-  EXPECT_NEAR(number(hollow, 1, "tet_volume_mm3"), number(filled, 1, "tet_volume_mm3"), 1e-5);
+  // Points of the surface may move for the worst tets, which a void has not: a thousandth of a volume at most.
+  for (int label : {1, 2})
+    EXPECT_NEAR(number(hollow, label, "surface_volume_mm3") / number(filled, label, "surface_volume_mm3"), 1, 1e-3) << label;
+  EXPECT_NEAR(number(hollow, 1, "tet_volume_mm3") / number(filled, 1, "tet_volume_mm3"), 1, 1e-3);
   EXPECT_TRUE(row(hollow, 2).at("tet_volume_mm3").is_null());
   EXPECT_GT(number(hollow, 2, "dice"), 0.99);
 }
