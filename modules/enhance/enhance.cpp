@@ -396,10 +396,17 @@ class Enhancement {
 
   /// What remeshing and smoothing took from the labels' volumes comes back by small moves.
   void restore(ComplexMesh& mesh, const MoveLimits& keep) {
-    for (int pass = 0; pass < 4; ++pass) {
-      double worst = 0;
-      for (const auto& [label, v] : label_volumes(mesh)) worst = std::max(worst, std::abs(v / volumes_[label] - 1));
-      if (worst < (o_.drawn_gap_mm > 0 ? 0.0005 : 0.002) || restore_volumes(mesh, volumes_, 0.1 * o_.pixel_mm, keep, o_.threads).moved == 0) break;
+    double before = 1e300;
+    for (int pass = 0; pass < 12; ++pass) {
+      double worst = 0, sum = 0;
+      for (const auto& [label, v] : label_volumes(mesh)) {
+        const double off = std::abs(v / volumes_[label] - 1);
+        worst = std::max(worst, off);
+        sum += off;
+      }
+      if (worst < (o_.drawn_gap_mm > 0 ? 0.0005 : 0.002) || sum > 0.97 * before) break;
+      before = sum;
+      if (restore_volumes(mesh, volumes_, 0.1 * o_.pixel_mm, keep, o_.threads).moved == 0) break;
     }
   }
 
