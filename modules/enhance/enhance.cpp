@@ -359,7 +359,7 @@ class Enhancement {
     keep.size_mm = &size;
     keep.clearance_rel = r.clearance_rel;
     keep.sheet_angle_deg = o_.sheet_angle_deg;
-    keep.corner_angle_deg = 25;
+    keep.corner_angle_deg = 28;
     soften(mesh, size, keep);
     separate_sheets(mesh, size, kSheetGap, keep, o_.threads);
     restore(mesh, keep);

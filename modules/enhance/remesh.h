@@ -15,7 +15,7 @@ struct RemeshOptions {
   int finish_sweeps = 6;        ///< over the worst triangles
   double good_angle_deg = 32;   ///< triangles below are worked on at the end
   int mend_sweeps = 8;          ///< by stronger means
-  double mend_angle_deg = 20;   ///< over those below
+  double mend_angle_deg = 26;   ///< over those below
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above ("not below, and not worse")
   double clearance_rel = 0.1;   ///< of the edge length: sheets come no closer
   double deviation_rel = 0.15;  ///< of the edge length: how far a collapse or flip may leave the surface
