@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -67,6 +68,7 @@ class Improver {
   bool mend(std::int32_t t, int pass) {
     const auto bad = [&] { return m_.tets[t].alive() && m_.quality[t] < goal_; };
     if (!bad()) return false;
+    ++c_.steps;
     if (moves_.remove_edge(t)) return ++c_.edges, true;
     if (moves_.remove_face(t)) return ++c_.faces, true;
     bool any = false;
@@ -135,6 +137,7 @@ void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, Improve
     }
     ImproveCounts done;
     Improver(tried, options, done).run();
+    counts.steps += done.steps;
     auto now = worst_of(tried);
     if (!better(now, worst)) continue;
     mesh = std::move(tried), worst = std::move(now);
@@ -152,7 +155,7 @@ void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options
     std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads, [&](std::size_t i, ImproveMesh& work) { with(work, done[i]); });
     for (const ImproveCounts& d : done) {
       counts.moved += d.moved, counts.edges += d.edges, counts.faces += d.faces;
-      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched;
+      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched, counts.steps += d.steps;
       counts.passes = std::max(counts.passes, d.passes);
     }
     return shared;

@@ -14,7 +14,7 @@ struct ImproveOptions {
 };
 
 struct ImproveCounts {
-  std::size_t moved = 0, edges = 0, faces = 0, collapsed = 0, inserted = 0, searched = 0;
+  std::size_t moved = 0, edges = 0, faces = 0, collapsed = 0, inserted = 0, searched = 0, steps = 0;
   int passes = 0;
 };
 
