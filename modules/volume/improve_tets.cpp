@@ -51,7 +51,7 @@ class Improver {
   std::vector<std::int32_t> worst_first() const {
     std::vector<std::int32_t> bad;
     for (std::size_t t = 0; t < m_.tets.size(); ++t)
-      if (m_.tets[t].alive() && m_.quality[t] < goal_) bad.push_back(static_cast<std::int32_t>(t));
+      if (m_.tets[t].alive() && m_.quality[t] < goal_ && m_.near_change(static_cast<std::int32_t>(t))) bad.push_back(static_cast<std::int32_t>(t));
     std::sort(bad.begin(), bad.end(), [&](std::int32_t a, std::int32_t b) {
       return m_.quality[a] != m_.quality[b] ? m_.quality[a] < m_.quality[b] : a < b;
     });
@@ -121,6 +121,7 @@ void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, Improve
   for (int attempt = 0, in_vain = 0; attempt < tries && in_vain < kPatience && !worst.empty() && std::chrono::steady_clock::now() < options.deadline; ++attempt) {
     ++in_vain;
     ImproveMesh tried = mesh;
+    tried.begin_changes();  // what lies elsewhere was tried in vain
     ImproveMoves moves(tried);
     moves.accept_from(1e-3);
     for (int shake = 0; shake < 1 + static_cast<int>(random(kShakes)); ++shake) {
