@@ -170,9 +170,9 @@ std::vector<ContourFile> random_contours(std::uint64_t seed) {
 LabelVolume volume_of_bytes(const std::uint8_t* data, std::size_t size) {
   std::size_t at = 0;
   const auto next = [&]() -> int { return at < size ? data[at++] : 0; };
-  static constexpr double kSpacings_mm[] = {1, 1, 1, 0.5, 2, 3, 5, 10, 0.1, 0.25, 0.7, 1.01};
+  static constexpr double kSpacings_mm[] = {1, 1, 1, 1, 1, 1, 1, 1, 0.8, 1.2, 1.5, 2, 0.5, 0.7, 1.01, 4};
   LabelVolume v;
-  for (int a = 0; a < 3; ++a) v.size[a] = 2 + next() % 8;
+  for (int a = 0; a < 3; ++a) v.size[a] = 2 + next() % 6;
   const int labels = 1 + next() % 7;
   for (int a = 0; a < 3; ++a) v.spacing_mm[a] = kSpacings_mm[next() % std::size(kSpacings_mm)];
   for (int l = 0; l <= labels; ++l) v.labels.push_back({l, ""});
