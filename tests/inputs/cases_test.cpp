@@ -185,6 +185,12 @@ TEST_F(Cases, MemoryIsBoundedAndAnErrorSaysByHowMuch) {
   std::filesystem::resize_file(path, 352 + 200000000);  // a sparse file: the bytes are there
   fails(4, {"info", path, "--max-memory", "128MB"}, {"191 MB", "128 MB", "--max-memory"});
   fails(2, {"info", path, "--max-memory", "lots"}, {"--max-memory"});
+  Around shell;  // a bound that the shell has set is told as it is
+  shell.in_child = [] {
+    const rlimit space{rlim_t{320} << 20, rlim_t{320} << 20};
+    return ::setrlimit(RLIMIT_AS, &space) == 0;
+  };
+  fails(4, {"info", path}, {"320 MB"}, {}, shell);
 }
 
 TEST_F(Cases, APngInAFolderOfDicomIsLeftOut) {

@@ -64,7 +64,16 @@ if [[ $kills -gt 0 ]]; then
     mkdir "$work/k"
     (cd "$work/k" && exec "$program" mesh "$work/blobs.nrrd" "${outputs[@]}" --quiet 2>/dev/null) &
     pid=$!
-    sleep "$(awk -v r=$RANDOM -v t=$took_ms 'BEGIN { printf "%.3f", 1.15 * t / 1000 * r / 32768 }')"
+    if ((i % 2 == 0)); then # any instant
+      sleep "$(awk -v r=$RANDOM -v t=$took_ms 'BEGIN { printf "%.3f", 1.15 * t / 1000 * r / 32768 }')"
+    else # while files are written and put in their places
+      for ((w = 0; w < 3000; ++w)); do
+        compgen -G "$work/k/*.part*" >/dev/null && break
+        kill -0 $pid 2>/dev/null || break
+        sleep 0.003
+      done
+      sleep "$(awk -v r=$RANDOM 'BEGIN { printf "%.3f", 0.12 * r / 32768 }')"
+    fi
     kill -KILL $pid 2>/dev/null
     wait $pid 2>/dev/null
     check_folder "$work/k" "kill $i"
@@ -80,7 +89,7 @@ if [[ $kills -gt 0 ]]; then
   done
   sleep 1
   pgrep -f "^$program --tetgen-worker" >/dev/null && pgrep -P 1 -f "^$program --tetgen-worker" >/dev/null && finding "a worker outlives its parent"
-  echo "kills: $kills at random instants of a run of $took_ms ms: $none left nothing, $whole all 6 outputs, $some some outputs, each whole; $((findings - before)) findings"
+  echo "kills: $kills at random instants of a run of $took_ms ms, every other one from the first byte written on: $none left nothing, $whole all 6 outputs, $some some outputs, each whole; $((findings - before)) findings"
 fi
 
 if [[ $disks -gt 0 ]]; then
