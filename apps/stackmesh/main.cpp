@@ -24,7 +24,7 @@ int report(const std::string& text, stackmesh::ErrorKind kind) {
 }
 
 int report_memory() {
-  return report("the memory that may be taken, " + stackmesh::memory_text(stackmesh::memory_limit()) + ", is not enough, this machine or --max-memory; mesh fewer labels or a smaller volume at once",
+  return report("the memory that may be taken, " + stackmesh::memory_text(stackmesh::memory_limit()) + ", is not enough, this machine, ulimit or --max-memory; mesh fewer labels or a smaller volume at once",
                 stackmesh::ErrorKind::no_result);
 }
 

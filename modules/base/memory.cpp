@@ -44,12 +44,24 @@ std::uint64_t group_memory() {
   return least;
 }
 
+/// What whoever started the process lets it take (ulimit -v, -d), as it was at the first call.
+std::uint64_t process_memory() {
+  static const std::uint64_t least = [] {
+    std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
+    rlimit limit{};
+    for (const auto which : {RLIMIT_AS, RLIMIT_DATA})
+      if (::getrlimit(which, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);
+    return bytes;
+  }();
+  return least;
+}
+
 }  // namespace
 
 std::uint64_t memory_limit() {
-  static const std::uint64_t there = std::min(machine_memory(), group_memory());
+  static const std::uint64_t there = std::min({machine_memory(), group_memory(), process_memory()});
   const std::uint64_t bytes = asked.load();
-  return bytes > 0 ? bytes : there;
+  return bytes > 0 ? std::min(bytes, process_memory()) : there;
 }
 
 void set_memory_limit(std::uint64_t bytes) {

@@ -4,8 +4,8 @@
 
 namespace stackmesh {
 
-/// The bytes that this process may take: what set_memory_limit() said, else the smaller of the machine's memory and its
-/// control group's bound.
+/// The bytes that this process may take: what set_memory_limit() said, else the smallest of the machine's memory, its
+/// control group's bound and the process's own (ulimit).
 std::uint64_t memory_limit();
 
 /// Bounds what this process and the processes that it starts may take, each: the kernel then refuses more, which is

@@ -19,6 +19,20 @@ std::size_t Reference::Cells::bucket(std::int32_t i, std::int32_t j, std::int32_
 
 template <class Corners>
 void Reference::Cells::build(std::size_t count, double cell_mm, int threads, Corners corners) {
+  // Needles much longer than a cell (outlines drawn with tens of thousands of points) would be listed in thousands of cells each.
+  constexpr double kMostCells = 200;  // of a face, on average
+  for (double most = kMostCells * static_cast<double>(count);; cell_mm *= 2) {
+    double sum = 0;
+    for (std::size_t n = 0; n < count && sum <= most; ++n) {
+      Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+      for (const Vec3& p : corners(n)) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+      sum += (1 + (high.x - low.x) / cell_mm) * (1 + (high.y - low.y) / cell_mm) * (1 + (high.z - low.z) / cell_mm);
+    }
+    if (sum <= most) break;
+  }
   inverse = 1 / cell_mm;
   std::size_t size = 256;
   while (size < count) size *= 2;

@@ -156,7 +156,7 @@ class NetBuilder {
 
   /// Slab z lies between the slices z - 1 and z.
   void find_vertices() {
-    const auto [width, height, slices] = net_.size;
+    const int width = net_.size[0], height = net_.size[1], slices = net_.size[2];  // clang takes no bindings into a lambda
     const int slabs = slices + 1;
     std::vector<std::vector<std::pair<Cell, std::uint16_t>>> found(slabs);
     const int step = slices_at_once(volume_, axes_, options_.threads);

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "pipeline/complete_report.h"
+#include "pipeline/far_sections.h"
 #include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
 #include "pipeline/provenance.h"
@@ -131,6 +132,8 @@ class MeshRun {
     } else {
       SectionOptions options = o_.sections;
       options.faired_surface = o_.enhance;
+      far_sections_ = long_voxels(*input_.volume);
+      if (!far_sections_.empty() && !options.virtual_sections) options.virtual_sections = 0;
       VolumeSections made = volume_sections(*input_.volume, options, progress_);
       ContourResult& c = made.contours;
       for (const std::string& w : made.warnings) warn(w);
@@ -171,10 +174,16 @@ class MeshRun {
     const std::size_t n = stack_.sections.size();
     gap_mm_ = n > 1 ? (stack_.sections[n - 1].z_mm - stack_.sections[0].z_mm) / static_cast<double>(n - 1) : pixel_mm_;
     if (!input_.volume) drawn_gap_mm_ = drawn_gap_mm(stack_);
+    if (!input_.volume) far_sections_ = far_sections(stack_, surface_);
     if (o_.reports.empty() || input_.volume) stack_ = Stack();  // a report judges by the contours, and draws them
   }
 
   bool is_too_large() {
+    if (!far_sections_.empty() && o_.enhance_up_to) {
+      lost_detail_ = "the surface is stitched, not enhanced";
+      warn(far_sections_ + ": the surface is kept as stitched; look at spacing and heights");
+      return true;
+    }
     if (!o_.enhance_up_to || surface_.triangles.size() <= *o_.enhance_up_to) return false;
     lost_detail_ = "the surface is stitched, not enhanced";
     warn("the stitched surface has " + std::to_string(surface_.triangles.size()) +
@@ -607,7 +616,7 @@ class MeshRun {
   WorldSpace world_ = WorldSpace::lps;
   std::vector<LabelFidelity> fidelity_;
   std::vector<std::int32_t> offending_;
-  std::string refusal_, mend_, lost_detail_;
+  std::string refusal_, mend_, lost_detail_, far_sections_;
 };
 
 }  // namespace

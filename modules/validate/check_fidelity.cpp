@@ -264,7 +264,7 @@ void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, co
   for (LabelFidelity& row : rows) keep(row.missing), keep(row.unmatched);
 }
 
-/// Pieces that cover no voxel centre of their label, by the component in one of whose voxels their middle lies: (component,
+/// Pieces that cover no voxel centre of their label, by the component to one of whose voxels their middle is nearest: (component,
 /// piece), each piece and each component once.
 std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
                                                                const Boundaries& boundaries, const std::vector<std::int32_t>& row_label,
@@ -277,19 +277,29 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& 
     for (const std::int32_t piece : boundaries.piece[t])
       if (piece >= 0 && piece_lost[piece])
         for (const std::int32_t v : complex.triangles[t].v) sum[piece] = sum[piece] + points[v], ++corners[piece];
+  // The nearest such voxel: of voxels that are thin along one axis, a piece may leave its own by less than half of their longest side.
   std::vector<char> taken(component_lost.size(), 0);
+  const auto& s = runs.spacing_mm;
+  const double reach = 0.5 * std::max({s[0], s[1], s[2]});
   for (std::size_t p = 0; p < piece_lost.size(); ++p) {
     if (!piece_lost[p] || corners[p] == 0) continue;
     const Vec3 m = (1 / corners[p]) * sum[p];
-    const long w = std::lround(m.x / runs.spacing_mm[0]), u = std::lround(m.y / runs.spacing_mm[1]), v = std::lround(m.z / runs.spacing_mm[2]);
-    if (u < 0 || u >= runs.size[1] || v < 0 || v >= runs.size[2]) continue;
-    const std::size_t line = static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
-    for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
-      const LabelRun& r = runs.runs[k];
-      if (w < r.begin || w >= r.end || !component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]]) continue;
-      taken[r.component] = 1;
-      pairs.push_back({r.component, static_cast<std::int32_t>(p)});
-    }
+    const auto beyond = [](double x, double begin, double end, double step) { return std::max({(begin - 0.5) * step - x, x - (end - 0.5) * step, 0.0}); };
+    std::pair<double, std::int32_t> nearest = {reach, -1};
+    for (long v = std::max(0L, std::lround((m.z - reach) / s[2])); v <= std::min<long>(runs.size[2] - 1, std::lround((m.z + reach) / s[2])); ++v)
+      for (long u = std::max(0L, std::lround((m.y - reach) / s[1])); u <= std::min<long>(runs.size[1] - 1, std::lround((m.y + reach) / s[1])); ++u) {
+        const std::size_t line = static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
+        for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
+          const LabelRun& r = runs.runs[k];
+          if (!component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]]) continue;
+          const double away = norm({beyond(m.x, r.begin, r.end, s[0]), beyond(m.y, static_cast<double>(u), static_cast<double>(u + 1), s[1]),
+                                    beyond(m.z, static_cast<double>(v), static_cast<double>(v + 1), s[2])});
+          if (away <= reach && (nearest.second < 0 || std::pair{away, r.component} < nearest)) nearest = {away, r.component};
+        }
+      }
+    if (nearest.second < 0) continue;
+    taken[nearest.second] = 1;
+    pairs.push_back({nearest.second, static_cast<std::int32_t>(p)});
   }
   return pairs;
 }

@@ -338,6 +338,9 @@ class Filler {
       mesh.labels.insert(mesh.labels.end(), meshes[i].labels.begin(), meshes[i].labels.end());
     }
     mesh.faces = input_.welded;
+    // Parts that are whole for themselves may not fit (a triangle of one lay within another's tets, once): then all labels are filled at once.
+    if (volume::Finding finding = volume::check_filled(mesh, options_.threads); !finding.message.empty())
+      return failure(Status::refused, name + ": " + finding.message, std::move(finding.triangles));
     return assemble(std::move(mesh), name);
   }
 

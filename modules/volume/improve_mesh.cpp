@@ -170,6 +170,7 @@ bool ImproveMesh::replace(const std::vector<std::int32_t>& old, const std::vecto
     tets[id].label = label;
     quality[id] = quality_of(fresh[k]);
     for (const std::int32_t v : fresh[k]) tet_of_[v] = id;
+    note_change(id);
   }
   for (std::size_t k = fresh.size(); k < old.size(); ++k) {
     tets[old[k]] = Tet{};
@@ -189,6 +190,7 @@ std::int32_t ImproveMesh::add_point(const Vec3& p) {
   points.push_back(p);
   movable.push_back(1);
   tet_of_.push_back(-1);
+  if (!changed_.empty()) changed_.push_back(1);
   return static_cast<std::int32_t>(points.size()) - 1;
 }
 
@@ -196,6 +198,7 @@ void ImproveMesh::drop_last_point() {
   points.pop_back();
   movable.pop_back();
   tet_of_.pop_back();
+  if (!changed_.empty()) changed_.pop_back();
 }
 
 void ImproveMesh::give_back(TetMesh& mesh) const {

@@ -43,6 +43,17 @@ class ImproveMesh {
   /// have the same outer faces or a tet of `fresh` is not positive (exactly).
   bool replace(const std::vector<std::int32_t>& old, const std::vector<Corners>& fresh);
 
+  /// From now on points of tets that change are remembered; before it, every point counts as one.
+  void begin_changes() { changed_.assign(points.size(), 0); }
+  void note_change(std::int32_t tet) {
+    if (!changed_.empty())
+      for (const std::int32_t p : tets[tet].v) changed_[p] = 1;
+  }
+  bool near_change(std::int32_t tet) const {
+    const Corners& v = tets[tet].v;
+    return changed_.empty() || changed_[v[0]] || changed_[v[1]] || changed_[v[2]] || changed_[v[3]];
+  }
+
   std::int32_t add_point(const Vec3& p);
   void drop_last_point();
 
@@ -66,6 +77,7 @@ class ImproveMesh {
   std::size_t kept_;
   std::vector<std::int32_t> tet_of_, free_;
   std::vector<std::uint32_t> stamps_;
+  std::vector<char> changed_;  // of each point
   std::uint32_t stamp_ = 0;
   std::vector<Face> faces_;              // of replace()
   std::vector<std::int32_t> ids_, mate_, stack_;

@@ -52,7 +52,10 @@ bool ImproveMoves::smooth(std::int32_t vertex, double enough) {
   for (const Corners& v : fan_)
     if (orientation(to, m_.points[v[1]], m_.points[v[2]], m_.points[v[3]]) <= 0) return false;
   m_.points[vertex] = to;
-  for (const std::int32_t t : around_) m_.quality[t] = m_.quality_of(m_.tets[t].v);
+  for (const std::int32_t t : around_) {
+    m_.quality[t] = m_.quality_of(m_.tets[t].v);
+    m_.note_change(t);
+  }
   return true;
 }
 

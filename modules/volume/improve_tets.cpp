@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -50,7 +51,7 @@ class Improver {
   std::vector<std::int32_t> worst_first() const {
     std::vector<std::int32_t> bad;
     for (std::size_t t = 0; t < m_.tets.size(); ++t)
-      if (m_.tets[t].alive() && m_.quality[t] < goal_) bad.push_back(static_cast<std::int32_t>(t));
+      if (m_.tets[t].alive() && m_.quality[t] < goal_ && m_.near_change(static_cast<std::int32_t>(t))) bad.push_back(static_cast<std::int32_t>(t));
     std::sort(bad.begin(), bad.end(), [&](std::int32_t a, std::int32_t b) {
       return m_.quality[a] != m_.quality[b] ? m_.quality[a] < m_.quality[b] : a < b;
     });
@@ -67,6 +68,7 @@ class Improver {
   bool mend(std::int32_t t, int pass) {
     const auto bad = [&] { return m_.tets[t].alive() && m_.quality[t] < goal_; };
     if (!bad()) return false;
+    ++c_.steps;
     if (moves_.remove_edge(t)) return ++c_.edges, true;
     if (moves_.remove_face(t)) return ++c_.faces, true;
     bool any = false;
@@ -119,6 +121,7 @@ void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, Improve
   for (int attempt = 0, in_vain = 0; attempt < tries && in_vain < kPatience && !worst.empty() && std::chrono::steady_clock::now() < options.deadline; ++attempt) {
     ++in_vain;
     ImproveMesh tried = mesh;
+    tried.begin_changes();  // what lies elsewhere was tried in vain
     ImproveMoves moves(tried);
     moves.accept_from(1e-3);
     for (int shake = 0; shake < 1 + static_cast<int>(random(kShakes)); ++shake) {
@@ -135,6 +138,7 @@ void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, Improve
     }
     ImproveCounts done;
     Improver(tried, options, done).run();
+    counts.steps += done.steps;
     auto now = worst_of(tried);
     if (!better(now, worst)) continue;
     mesh = std::move(tried), worst = std::move(now);
@@ -152,7 +156,7 @@ void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options
     std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads, [&](std::size_t i, ImproveMesh& work) { with(work, done[i]); });
     for (const ImproveCounts& d : done) {
       counts.moved += d.moved, counts.edges += d.edges, counts.faces += d.faces;
-      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched;
+      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched, counts.steps += d.steps;
       counts.passes = std::max(counts.passes, d.passes);
     }
     return shared;

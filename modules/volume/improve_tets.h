@@ -15,6 +15,7 @@ struct ImproveOptions {
 
 struct ImproveCounts {
   std::size_t moved = 0, edges = 0, faces = 0, collapsed = 0, inserted = 0, searched = 0;
+  std::size_t steps = 0;  ///< how often a bad tet was worked on, in vain or not: what the improvement costs
   int passes = 0;
 };
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Fuzzes every reader for so many seconds each, from a corpus made of the tests' own inputs; what is found stays in build-fuzz/found.
-#   tests/fuzz/run.sh SECONDS [READER...]
+# Fuzzes every reader, and the pipeline behind them, for so many seconds each, from a corpus made of the tests' own inputs; what is found stays in build-fuzz/found.
+#   tests/fuzz/run.sh SECONDS [TARGET...]      targets: volumes slices dicom contours meshes tables pipeline
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-seconds=${1:?usage: tests/fuzz/run.sh SECONDS [READER...]}
+seconds=${1:?usage: tests/fuzz/run.sh SECONDS [TARGET...]}
 shift
 readers=("$@")
-[[ ${#readers[@]} -gt 0 ]] || readers=(volumes slices dicom contours meshes tables)
+[[ ${#readers[@]} -gt 0 ]] || readers=(volumes slices dicom contours meshes tables pipeline)
 cmake --preset fuzz >/dev/null
 cmake --build build-fuzz --parallel "${STACKMESH_JOBS:-$(nproc)}" --target "${readers[@]/#/fuzz_}"
 mkdir -p build-fuzz/found
@@ -33,6 +33,8 @@ seed_all dicom .dcm .dcm
 seed_all contours .cnt
 seed_all meshes .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh
 seed_all tables .json
+mkdir -p build-fuzz/corpus/pipeline
+cp tests/fuzz/stacks/* build-fuzz/corpus/pipeline  # read by tests/enhance, too
 
 status=0
 for reader in "${readers[@]}"; do

@@ -185,6 +185,12 @@ TEST_F(Cases, MemoryIsBoundedAndAnErrorSaysByHowMuch) {
   std::filesystem::resize_file(path, 352 + 200000000);  // a sparse file: the bytes are there
   fails(4, {"info", path, "--max-memory", "128MB"}, {"191 MB", "128 MB", "--max-memory"});
   fails(2, {"info", path, "--max-memory", "lots"}, {"--max-memory"});
+  Around shell;  // a bound that the shell has set is told as it is
+  shell.in_child = [] {
+    const rlimit space{rlim_t{320} << 20, rlim_t{320} << 20};
+    return ::setrlimit(RLIMIT_AS, &space) == 0;
+  };
+  fails(4, {"info", path}, {"320 MB"}, {}, shell);
 }
 
 TEST_F(Cases, APngInAFolderOfDicomIsLeftOut) {
@@ -206,6 +212,32 @@ TEST_F(Cases, ASlabOfOneSliceIsStackedAlongAnotherAxis) {
   const Json r = mesh(write("slab.nii", n.header() + pack<std::uint8_t>(values)), {"--simplify", "0", "--interpolate", "0"});
   EXPECT_EQ(r.at("input").at("axis"), "y");
   EXPECT_NEAR(volume(r, 1), 60, 6);
+}
+
+/// Minutes, and hundreds of thousands of virtual slices or needles, for a few voxels or lines, as long as they were enhanced.
+TEST_F(Cases, AbsurdHeightsAndSpacingsAreToldAndKeptAsStitched) {
+  const auto kept = [&](const std::string& path, const std::string& told) {
+    const Ended r = succeeds({"mesh", path, "-o", out("a.vtu"), "--report", out("R.json")});
+    EXPECT_TRUE(r.warns_of(told)) << r.err;
+    EXPECT_TRUE(r.warns_of("kept as stitched"));
+    EXPECT_EQ(report().at("surface").at("level"), "stitched");
+    EXPECT_EQ(report().at("volume").at("closure"), "verified");
+    EXPECT_LT(report().at("stitched").at("triangles").get<int>(), 2000);
+  };
+  std::vector<int> values(8 * 8 * 3, 0);
+  for (int z = 0; z < 3; ++z)
+    for (int y = 2; y < 6; ++y)
+      for (int x = 2; x < 6; ++x) values[(z * 8 + y) * 8 + x] = 1;
+  for (const auto& [x, z] : {std::pair{1.0f, 2000.0f}, std::pair{1.0f, 1e7f}, std::pair{0.002f, 1.0f}}) {
+    Nifti n;
+    n.dim = {3, 8, 8, 3, 1, 1, 1, 1};
+    n.pixdim = {1, x, 1, z};
+    n.srow = {x, 0, 0, 0, 0, 1, 0, 0, 0, 0, z, 0};
+    kept(write("far.nii", n.header() + pack<std::uint8_t>(values)), "along one axis");
+  }
+  std::string text = "S 3\n";
+  for (const char* z : {"0", "5", "1e6"}) text += std::string("v 4 z ") + z + "\n{\n0 0\n10 0\n10 10\n0 10\n}\n";
+  kept(write("far.cnt", text), "mm apart");
 }
 
 }  // namespace

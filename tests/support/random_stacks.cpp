@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <set>
 #include <string>
@@ -164,6 +165,26 @@ std::vector<ContourFile> random_contours(std::uint64_t seed) {
     files.push_back(file);
   }
   return files;
+}
+
+LabelVolume volume_of_bytes(const std::uint8_t* data, std::size_t size) {
+  std::size_t at = 0;
+  const auto next = [&]() -> int { return at < size ? data[at++] : 0; };
+  static constexpr double kSpacings_mm[] = {1, 1, 1, 1, 1, 1, 1, 1, 0.8, 1.2, 1.5, 2, 0.5, 0.7, 1.01, 4};
+  LabelVolume v;
+  for (int a = 0; a < 3; ++a) v.size[a] = 2 + next() % 6;
+  const int labels = 1 + next() % 7;
+  for (int a = 0; a < 3; ++a) v.spacing_mm[a] = kSpacings_mm[next() % std::size(kSpacings_mm)];
+  for (int l = 0; l <= labels; ++l) v.labels.push_back({l, ""});
+  v.voxels.assign(static_cast<std::size_t>(v.size[0]) * v.size[1] * v.size[2], 0);
+  int byte = 0;
+  for (std::size_t i = 0; i < v.voxels.size(); ++i) {
+    if (i % 2 == 0) byte = next();
+    v.voxels[i] = static_cast<std::uint16_t>((i % 2 == 0 ? byte & 15 : byte >> 4) % (labels + 1));
+  }
+  if (*std::max_element(v.voxels.begin(), v.voxels.end()) == 0) v.voxels[v.voxels.size() / 2] = 1;
+  v.kind = "fuzzed";
+  return v;
 }
 
 LabelVolume volume_of(const std::vector<std::vector<const char*>>& slices, double gap_mm) {

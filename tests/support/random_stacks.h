@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,10 @@ LabelVolume random_volume(std::uint64_t seed);
 /// Contours of one to three labels whose sections are near copies of each other: jitter from 1e-1 down to 1e-14
 /// of an edge, also exact copies.
 std::vector<ContourFile> random_contours(std::uint64_t seed);
+
+/// A volume of 2 to 7 voxels along each axis from any bytes, for the fuzzer: three bytes of sizes, one of labels (1 to 7), three of spacings (0.5 to 4 mm, in
+/// steps, mostly 1), then two voxels a byte; what is not there is background. One voxel at least is labelled.
+LabelVolume volume_of_bytes(const std::uint8_t* data, std::size_t size);
 
 /// A volume from a list of slices, each a list of rows of digits ("0110"); spacing 1 x 1 x gap mm.
 LabelVolume volume_of(const std::vector<std::vector<const char*>>& slices, double gap_mm = 1);

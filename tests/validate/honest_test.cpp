@@ -140,6 +140,22 @@ TEST(BandDistance, AShrunkSphereAgreesWithAllCells) {
   }
 }
 
+TEST(Components, OfAVoxelThatIsThinMayLieALittleBesideIt) {
+  LabelVolume v = empty_volume(7, 7, 7, 1);
+  v.spacing_mm = {1, 1, 0.2};
+  v.voxels[v.index(3, 3, 3)] = 1;
+  const Vec3 middle = v.world(3, 3, 3);
+  const auto at = [&](double beside_mm) { return check_fidelity(icosphere(0.09, 2, 1, {middle.x, middle.y, middle.z + beside_mm}), v, along(2))[0]; };
+  for (const double beside : {0.0, 0.2, -0.55}) {  // the voxel ends 0.1 above its centre; half of its longest side beyond that still is beside it
+    EXPECT_EQ(at(beside).missing_components, 0) << beside;
+    EXPECT_TRUE(at(beside).components_match) << beside;
+  }
+  for (const double beside : {0.65, -0.7, 1.0}) {
+    EXPECT_EQ(at(beside).missing_components, 1) << beside;
+    EXPECT_FALSE(at(beside).components_match) << beside;
+  }
+}
+
 TEST(BandDistance, OfLabelsStoredFinerIsThatOfTheirBlocks) {
   std::mt19937 random(5);
   LabelVolume coarse = empty_volume(6, 5, 7, 2);
