@@ -33,8 +33,7 @@ constexpr double kSheetGap = 0.2;         // of the edge length: what sheets kee
 constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
 constexpr double kSettled = 0.01;         // pixels: vertices that near the faired surface stay where they are
 constexpr double kDrawnCorner_deg = 35;
-constexpr double kDrawnBulges = 4, kDrawnDeviation_mm = 0.1;  // the default deviation of smooth drawn outlines: so many bulges, at least that
-constexpr double kRoughBulges = 6;        // half a pixel: outlines as rough as pixels
+constexpr double kDrawnBulges = 6, kDrawnDeviation_mm = 0.15;  // the default deviation of smooth drawn outlines: so many bulges, at least that
 constexpr double kLeastSmoothing = 1e-3;  // of the smoothing's limits, for outlines without any roughness
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
@@ -209,7 +208,7 @@ class Enhancement {
   /// How much smoothing the surface is in need of: 1 where it has steps of pixels, or outlines as rough as those, near 0 for outlines that
   /// were drawn smoothly: there it would only move what was drawn.
   double roughness() const {
-    const double share = std::min(1.0, kRoughBulges * o_.drawn_bulge_mm / (0.5 * o_.pixel_mm));
+    const double share = std::min(1.0, kDrawnBulges * o_.drawn_bulge_mm / (0.5 * o_.pixel_mm));
     return o_.drawn_gap_mm > 0 ? std::max(kLeastSmoothing, share * share) : 1;
   }
 
@@ -234,7 +233,7 @@ class Enhancement {
       warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
            number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
     // As edges grow with the root of their deviation, so does the smallest one.
-    s.edge_min_mm = o_.edge_min_mm.value_or(1.5 * o_.pixel_mm * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0));
+    s.edge_min_mm = o_.edge_min_mm.value_or(std::max(1.0, 1.5 * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0)) * o_.pixel_mm);
     std::map<Label, std::array<Vec3, 2>> boxes;
     for (const MeshTriangle& t : mesh.triangles) {
       const auto [below, above] = mesh.labels_of(t.patch);
@@ -392,7 +391,7 @@ class Enhancement {
     s.taubin_lambda = 0.5;
     s.taubin_mu = -0.53;
     const std::vector<Vec3> to = smoothed_places(mesh, s);
-    const double reach = 4 * std::max(s.limit_xy_mm, s.limit_z_mm);
+    const double reach = 2 * std::max(o_.pixel_mm, o_.gap_mm);
     if (distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm)
       smooth(mesh, light);
     else

@@ -34,8 +34,8 @@ struct EnhanceOptions {
   double feature_deg = 70;      ///< straight chains of edges that bend by more are ridges, from 8 pixels on
   double drawn_gap_mm = 0;  ///< above 0: sections are drawn outlines that far apart, without voxel steps: corners above 35 degrees that
                             ///< three of them share are ridges, and volumes are kept closer
-  double drawn_bulge_mm = 0;  ///< of drawn outlines, over their own edges: the default deviation is four times that (at least 0.1 mm), if that is less
-                              ///< than half a pixel, and the default smallest edge shrinks as its root
+  double drawn_bulge_mm = 0;  ///< of drawn outlines, over their own edges: the default deviation is six times that (at least 0.15 mm), if that is less
+                              ///< than half a pixel; the default smallest edge shrinks as its root, to a pixel at least
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above it ("not below, and not worse")
   int threads = 0;              ///< 0: all; the result does not depend on it
 };
