@@ -118,7 +118,8 @@ TEST_F(DrawnContours, EitherEndIsClosedAsAsked) {
   const Json r = surface({file, "--caps", "1:high=flat,low=round"});
   EXPECT_EQ(row(r, 1).at("caps"), (Json{{"low", "round"}, {"high", "flat"}}));
   EXPECT_NEAR(box(1).high[2], 21, kPlace);
-  EXPECT_LT(box(1).low[2], -1);
+  EXPECT_LT(box(1).low[2], -0.7) << "a dome of up to half a gap";
+  EXPECT_GE(box(1).low[2], -1.5);
   EXPECT_EQ(row(surface({file, "--caps", "1:low=round"}), 1).at("caps"), (Json{{"low", "round"}, {"high", "flat"}})) << "the other end by itself";
   for (const char* name : {"a.off", "R.json", "a_1.off"}) std::remove(out(name).c_str());
   fails(2, {"surface", file, "--caps", "1:high=flat,high=round", "-o", out("b.off")}, {"the high end of label '1' is named twice"});
