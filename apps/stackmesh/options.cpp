@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <set>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -161,6 +162,7 @@ void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::s
     return per_label.back().second;
   };
   std::string of_ends;  // the label whose ends were named last
+  std::set<std::string> named;  // ends
   for (const std::string& item : split(text, ',')) {
     const std::size_t at = item.find('=');
     if (at == std::string::npos || at == 0)
@@ -176,6 +178,7 @@ void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::s
       continue;
     }
     if (colon != std::string::npos) of_ends = left.substr(0, colon);
+    if (!named.insert(of_ends + ':' + end).second) fail_usage("the " + end + " end of label '" + of_ends + "' is named twice", "--caps " + text, "name each end once");
     (end == "low" ? ends_of(of_ends).low : ends_of(of_ends).high) = caps;
   }
 }

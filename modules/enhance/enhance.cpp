@@ -33,6 +33,8 @@ constexpr double kSheetGap = 0.2;         // of the edge length: what sheets kee
 constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
 constexpr double kSettled = 0.01;         // pixels: vertices that near the faired surface stay where they are
 constexpr double kDrawnCorner_deg = 35;
+constexpr double kDrawnBulges = 6, kDrawnDeviation_mm = 0.15;  // the default deviation of smooth drawn outlines: so many bulges, at least that
+constexpr double kLeastSmoothing = 1e-3;  // of the smoothing's limits, for outlines without any roughness
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
 
 std::string number(double x) {
@@ -156,8 +158,8 @@ class Enhancement {
   void smooth_mesh(ComplexMesh& mesh) {
     SmoothingOptions s;
     s.passes = std::min(o_.smooth_passes, kSmoothPasses);
-    s.limit_xy_mm = 0.33 * o_.pixel_mm;
-    s.limit_z_mm = 0.33 * o_.gap_mm;
+    s.limit_xy_mm = 0.33 * roughness() * o_.pixel_mm;
+    s.limit_z_mm = 0.33 * roughness() * o_.gap_mm;
     s.keep.clearance_mm = 0.02 * std::min(o_.pixel_mm, o_.gap_mm);
     s.keep.sheet_angle_deg = o_.sheet_angle_deg;
     s.threads = o_.threads;
@@ -214,6 +216,21 @@ class Enhancement {
     result_.counts.held_back = r.held_back;
   }
 
+  /// How much smoothing the surface is in need of: 1 where it has steps of pixels, or outlines as rough as those, near 0 for outlines that
+  /// were drawn smoothly: there it would only move what was drawn.
+  double roughness() const {
+    const double share = std::min(1.0, kDrawnBulges * o_.drawn_bulge_mm / (0.5 * o_.pixel_mm));
+    return o_.drawn_gap_mm > 0 ? std::max(kLeastSmoothing, share * share) : 1;
+  }
+
+  /// Smooth outlines are followed more closely than a pixel asks for: triangles that hold the drawn volume stand off its surface
+  /// by two thirds of what their edges bulge.
+  double usual_deviation_mm() const {
+    if (o_.faired != nullptr) return 0.25 * o_.pixel_mm;
+    const double half = 0.5 * o_.pixel_mm;
+    return o_.drawn_gap_mm > 0 ? std::min(half, std::max(kDrawnBulges * o_.drawn_bulge_mm, kDrawnDeviation_mm)) : half;
+  }
+
   SizingOptions sizing(const ComplexMesh& mesh) {
     SizingOptions s;
     s.threads = o_.threads;
@@ -222,11 +239,12 @@ class Enhancement {
     s.bend = bend_;
     s.wall_reach_mm = wall_reach_;
     s.gradation = o_.gradation;
-    s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or((o_.faired != nullptr ? 0.25 : 0.5) * o_.pixel_mm);
+    s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(usual_deviation_mm());
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
       warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
            number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
-    s.edge_min_mm = o_.edge_min_mm.value_or(1.5 * o_.pixel_mm);
+    // As edges grow with the root of their deviation, so does the smallest one.
+    s.edge_min_mm = o_.edge_min_mm.value_or(std::max(1.0, 1.5 * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0)) * o_.pixel_mm);
     std::map<Label, std::array<Vec3, 2>> boxes;
     for (const MeshTriangle& t : mesh.triangles) {
       const auto [below, above] = mesh.labels_of(t.patch);
@@ -361,6 +379,7 @@ class Enhancement {
     keep.sheet_angle_deg = o_.sheet_angle_deg;
     keep.corner_angle_deg = 28;
     soften(mesh, size, keep);
+    draw_back(mesh, size, keep);
     separate_sheets(mesh, size, kSheetGap, keep, o_.threads);
     restore(mesh, keep);
   }
@@ -371,8 +390,8 @@ class Enhancement {
   void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     if (o_.smooth_passes == 0) return;
     SmoothingOptions s;
-    s.limit_xy_mm = 0.5 * o_.pixel_mm;
-    s.limit_z_mm = 0.5 * o_.gap_mm;
+    s.limit_xy_mm = 0.5 * roughness() * o_.pixel_mm;
+    s.limit_z_mm = 0.5 * roughness() * o_.gap_mm;
     for (double x : size) s.share.push_back(static_cast<float>(std::min(1.0, x / (4 * o_.pixel_mm))));
     s.keep = keep;
     s.threads = o_.threads;
@@ -384,7 +403,7 @@ class Enhancement {
     s.taubin_lambda = 0.5;
     s.taubin_mu = -0.53;
     const std::vector<Vec3> to = smoothed_places(mesh, s);
-    const double reach = 4 * std::max(s.limit_xy_mm, s.limit_z_mm);
+    const double reach = 2 * std::max(o_.pixel_mm, o_.gap_mm);
     if (distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm)
       smooth(mesh, light);
     else
@@ -392,6 +411,27 @@ class Enhancement {
     if (o_.smooth_passes <= kSmoothPasses) return;
     s.passes = o_.smooth_passes - kSmoothPasses;
     smooth(mesh, s);
+  }
+
+  /// Brings the vertices of smooth drawn outlines back onto the surface that they stand for, from which the rounds of fitting and relocation let them
+  /// drift; of rough outlines not, as that would undo the smoothing.
+  void draw_back(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
+    const double share = 1 - roughness();
+    if (!(share > 0)) return;
+    std::vector<Vec3> to = mesh.points;
+    for_each_index(to.size(), o_.threads, [&](std::size_t n) {
+      const auto v = static_cast<std::int32_t>(n);
+      if (mesh.star[v].empty() || mesh.is_fixed(v)) return;
+      Vec3 d;
+      if (!mesh.curve[v].empty()) {
+        if (const auto at = reference_->nearest_on_curve(to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), size[v])) d = *at - to[v];
+      } else if (const auto foot = reference_->nearest(to[v], mesh.triangles[mesh.star[v][0]].patch, size[v], -1, 0)) {
+        d = foot->point - to[v];
+      }
+      if (mesh.flat[v]) d.z = 0;
+      to[v] = to[v] + share * d;
+    });
+    move_guarded(mesh, to, keep, o_.threads);
   }
 
   /// What remeshing and smoothing took from the labels' volumes comes back by small moves.

@@ -23,8 +23,8 @@ struct EnhanceOptions {
   std::map<Label, double> label_volume_mm3;  ///< volume that a label should have, as far as small moves give it; else the
                                              ///< stitched one's (which lies between slices as a frustum, not as voxels)
   std::optional<double>
-      deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default a quarter of a pixel of faired interfaces, else half a pixel
-  std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels
+      deviation_mm;  ///< by curvature: distance of an edge to the curved surface; default a quarter of a pixel of faired interfaces, else half a pixel, less for smooth drawn outlines
+  std::optional<double> edge_min_mm;  ///< by curvature: default 1.5 pixels, less for smooth drawn outlines
   std::optional<double> edge_max_mm;  ///< by curvature: default a tenth of the label's box
   std::optional<std::size_t>
       target_tets;         ///< by curvature: edges get longer, or shorter, until about that many tetrahedra are expected
@@ -34,6 +34,8 @@ struct EnhanceOptions {
   double feature_deg = 70;      ///< straight chains of edges that bend by more are ridges, from 8 pixels on
   double drawn_gap_mm = 0;  ///< above 0: sections are drawn outlines that far apart, without voxel steps: corners above 35 degrees that
                             ///< three of them share are ridges, and volumes are kept closer
+  double drawn_bulge_mm = 0;  ///< of drawn outlines, over their own edges: the default deviation is six times that (at least 0.15 mm), if that is less
+                              ///< than half a pixel; the default smallest edge shrinks as its root, to a pixel at least
   double sheet_angle_deg = 20;  ///< angles between sheets are kept above it ("not below, and not worse")
   int threads = 0;              ///< 0: all; the result does not depend on it
 };

@@ -88,6 +88,27 @@ std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std:
   return key;
 }
 
+namespace {
+
+/// Of a vertex on a curve or ridge: the triangles about it that are reached from `start` without passing one; empty for any other vertex. A normal
+/// averaged over a ridge would round off what it parts.
+std::vector<std::int32_t> on_this_side(const ComplexMesh& mesh, std::int32_t v, std::int32_t start) {
+  std::vector<std::int32_t> reached;
+  if (mesh.curve[v].empty()) return reached;
+  reached.push_back(start);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    for (const std::int32_t w : mesh.triangles[reached[i]].v) {
+      if (w == v || std::find(mesh.curve[v].begin(), mesh.curve[v].end(), w) != mesh.curve[v].end()) continue;
+      for (const std::int32_t o : mesh.star[v]) {
+        const auto& c = mesh.triangles[o].v;
+        if ((c[0] == w || c[1] == w || c[2] == w) && std::find(reached.begin(), reached.end(), o) == reached.end()) reached.push_back(o);
+      }
+    }
+  return reached;
+}
+
+}  // namespace
+
 void Reference::add_faces(const ComplexMesh& mesh, const std::vector<std::int32_t>& patch_of, int threads) {
   const std::size_t before = faces_.size();
   std::vector<std::int32_t> number(mesh.triangles.size(), -1);
@@ -112,11 +133,12 @@ void Reference::add_faces(const ComplexMesh& mesh, const std::vector<std::int32_
       f.next[k] = -1;
       Vec3 sum;
       int beyond = 0;
+      const std::vector<std::int32_t> side = on_this_side(mesh, t.v[k], f.triangle);
       for (std::int32_t o : mesh.star[t.v[k]]) {
         const MeshTriangle& other = mesh.triangles[o];
         if (other.patch != t.patch) continue;
         const Vec3 a = mesh.area_vector(other.v);
-        if (dot(a, area) > 0.5 * size * norm(a)) sum = sum + a;
+        if (dot(a, area) > 0.5 * size * norm(a) && (side.empty() || std::find(side.begin(), side.end(), o) != side.end())) sum = sum + a;
         const std::int32_t w = t.v[(k + 1) % 3];
         if (o != f.triangle && (other.v[0] == w || other.v[1] == w || other.v[2] == w))
           f.next[k] = beyond++ == 0 ? number[o] : -1;

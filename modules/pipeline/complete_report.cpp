@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "validate/boundaries.h"
 #include "validate/check_bends.h"
 #include "validate/check_thickness.h"
 #include "validate/check_topology.h"
@@ -66,6 +67,41 @@ void add_handles(RunReport& report, const InterfaceComplex& surface, const Label
     std::snprintf(text, sizeof text, "Label %d has a handle or tunnel about %.3g mm wide at (%.2f, %.2f, %.2f) mm that no slice asks for.", static_cast<int>(t.label), h.size_mm, h.where.x,
                   h.where.y, h.where.z);
     d.text = text;
+    report.defects.push_back(std::move(d));
+  }
+}
+
+/// Pieces of a label beyond those that the drawn sections imply, one by one: its smallest.
+void add_loose_pieces(RunReport& report, const InterfaceComplex& surface, const Boundaries& pieces, const LabelTopology& t,
+                      const std::function<std::optional<int>(const Vec3&)>& section_of) {
+  std::vector<std::int32_t> outer;
+  for (std::size_t s = 0; s < pieces.piece_row.size(); ++s)
+    if (pieces.labels[pieces.piece_row[s]].label == t.label && pieces.piece_volume_mm3[s] > 0) outer.push_back(static_cast<std::int32_t>(s));
+  std::stable_sort(outer.begin(), outer.end(), [&](std::int32_t a, std::int32_t b) { return pieces.piece_volume_mm3[a] < pieces.piece_volume_mm3[b]; });
+  outer.resize(std::min<std::size_t>({outer.size(), static_cast<std::size_t>(t.pieces - t.implied_pieces), 100}));
+  for (const std::int32_t piece : outer) {
+    Defect d;
+    d.kind = "loose_piece";
+    d.label = t.label;
+    Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    d.entity_kind = "triangles";
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      if (pieces.piece[i][0] != piece && pieces.piece[i][1] != piece) continue;
+      d.entities.push_back(static_cast<std::int32_t>(i));
+      for (const std::int32_t v : surface.triangles[i].v) {
+        const Vec3& p = surface.points[v];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+    }
+    d.where = 0.5 * (low + high);
+    d.size_mm = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    if (section_of) d.section = section_of(d.where);
+    char text[240];
+    std::snprintf(text, sizeof text, "Label %d has a piece of its own of %.3g mm3 at (%.2f, %.2f, %.2f) mm, from (%.1f, %.1f, %.1f) to (%.1f, %.1f, %.1f), that the sections do not imply.",
+                  static_cast<int>(t.label), pieces.piece_volume_mm3[piece], d.where.x, d.where.y, d.where.z, low.x, low.y, low.z, high.x, high.y, high.z);
+    d.text = text;
+    report.warnings.push_back("label" + d.text.substr(5, d.text.size() - 6) + "; --min-piece or --keep-largest leaves it out");
     report.defects.push_back(std::move(d));
   }
 }
@@ -171,6 +207,12 @@ void complete_report(RunReport& report, const Judged& j) {
   where.section_of = section_finder(j);
   report.defects = find_defects(*j.surface, *report.surface, j.mesh, in.volume, j.fidelity, where);
   for (const LabelTopology& t : topology) add_handles(report, *j.surface, t, where.section_of);
+  std::optional<Boundaries> pieces;
+  for (const LabelTopology& t : topology) {
+    if (!j.sections || t.implied_pieces <= 0 || t.pieces <= t.implied_pieces) continue;
+    if (!pieces) pieces = find_boundaries(*j.surface, 1);
+    add_loose_pieces(report, *j.surface, *pieces, t, where.section_of);
+  }
 }
 
 }  // namespace stackmesh

@@ -111,7 +111,6 @@ std::string structure_set_in(const std::vector<std::string>& paths) {
 /// Voids are read beside the labels that were asked for; where drawn ones overlap they go first, as a cavity lies in its wall.
 InputOptions with_voids(InputOptions options) {
   if (options.voids.empty()) return options;
-  if (options.merge) fail_usage("--merge has no meaning beside --void", "command line", "leave one of them out");
   if (!options.labels.empty()) options.labels = options.voids + "," + options.labels;
   return options;
 }
@@ -126,10 +125,43 @@ std::set<Label> resolve_voids(const std::string& text, const std::vector<LabelIn
   return voids;
 }
 
+/// With voids, --merge is about the labels that are filled: they become the smallest of them, and the voids stay what they are.
+void merge_filled(Input& input) {
+  const auto filled = [&](Label l) { return l != 0 && input.voids.count(l) == 0; };
+  Label kept = 0;
+  for (const LabelInfo& l : input.labels)
+    if (filled(l.number) && (kept == 0 || l.number < kept)) kept = l.number;
+  const auto goes = [&](const LabelInfo& l) { return filled(l.number) && l.number != kept; };
+  input.labels.erase(std::remove_if(input.labels.begin(), input.labels.end(), goes), input.labels.end());
+  if (input.volume) {
+    LabelVolume& v = *input.volume;
+    std::vector<LabelInfo> labels;
+    std::vector<std::uint16_t> to(v.labels.size(), 0);
+    for (std::size_t k = 0; k < v.labels.size(); ++k)
+      if (!goes(v.labels[k])) to[k] = static_cast<std::uint16_t>(labels.size()), labels.push_back(v.labels[k]);
+    const auto at = std::find_if(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return l.number == kept; });
+    for (std::size_t k = 0; k < v.labels.size(); ++k)
+      if (goes(v.labels[k])) to[k] = static_cast<std::uint16_t>(at - labels.begin());
+    v.labels = std::move(labels);
+    for (std::uint16_t& x : v.voxels) x = to[x];
+    return;
+  }
+  std::vector<LabelInfo>& labels = input.sections->labels;
+  labels.erase(std::remove_if(labels.begin() + 1, labels.end(), goes), labels.end());
+  for (Section& s : input.sections->sections) {
+    for (SectionEdge& e : s.edges)
+      for (Label* side : {&e.left, &e.right})
+        if (filled(*side)) *side = kept;
+    s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
+  }
+}
+
 }  // namespace
 
 Input read_input(const InputOptions& asked) {
-  const InputOptions options = with_voids(asked);
+  InputOptions options = with_voids(asked);
+  const bool merges_later = asked.merge && !asked.voids.empty();
+  if (merges_later) options.merge = false;
   Input input;
   if (options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
   for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
@@ -142,6 +174,7 @@ Input read_input(const InputOptions& asked) {
   input.voids = resolve_voids(options.voids, input.labels);
   if (input.volume)
     for (LabelInfo& label : input.volume->labels) label.name = printable(label.name);
+  if (merges_later) merge_filled(input);
   return input;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/disjoint_sets.h"
+#include "base/error.h"
 #include "validate/boundaries.h"
 
 namespace stackmesh {
@@ -54,6 +55,12 @@ bool goes_round(const InterfaceComplex& c, const Boundaries& b, std::int32_t pie
   return inside;
 }
 
+[[noreturn]] void fail_empty(const PieceOptions& o) {
+  char text[48];
+  std::snprintf(text, sizeof text, "--min-piece %.6g", *o.min_piece_mm3);
+  fail_usage("no piece of any label is as large", text, "ask for a smaller one");
+}
+
 }  // namespace
 
 void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<std::string>& warnings) {
@@ -83,6 +90,7 @@ void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<s
     for (std::int32_t root : left_out(volume.labels[l].number, of_label[l], options, warnings)) gone.push_back(root);
   std::sort(gone.begin(), gone.end());
   if (gone.empty()) return;
+  if (gone.size() == count.size()) fail_empty(options);
   for (std::size_t p = 0; p < voxels.size(); ++p)
     if (voxels[p] != 0 && std::binary_search(gone.begin(), gone.end(), sets.find(static_cast<std::int32_t>(p)))) voxels[p] = 0;
 }
@@ -129,6 +137,7 @@ void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::ve
     }
     kept.triangles.push_back(out);
   }
+  if (kept.triangles.empty() && !complex.triangles.empty()) fail_empty(options);
   complex = std::move(kept);
 }
 

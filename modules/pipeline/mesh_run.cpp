@@ -173,8 +173,11 @@ class MeshRun {
     pixel_mm_ = stack_.pixel_mm;
     const std::size_t n = stack_.sections.size();
     gap_mm_ = n > 1 ? (stack_.sections[n - 1].z_mm - stack_.sections[0].z_mm) / static_cast<double>(n - 1) : pixel_mm_;
-    if (!input_.volume) drawn_gap_mm_ = drawn_gap_mm(stack_);
-    if (!input_.volume) far_sections_ = far_sections(stack_, surface_);
+    if (!input_.volume) {
+      drawn_gap_mm_ = drawn_gap_mm(stack_);
+      drawn_bulge_mm_ = drawn_bulge_mm(stack_);
+      far_sections_ = far_sections(stack_, surface_);
+    }
     if (o_.reports.empty() || input_.volume) stack_ = Stack();  // a report judges by the contours, and draws them
   }
 
@@ -232,6 +235,7 @@ class MeshRun {
       options.inner_caps = o_.stitch.caps == Caps::flat || !o_.label_caps_text.empty();
     }
     options.drawn_gap_mm = drawn_gap_mm_;
+    options.drawn_bulge_mm = drawn_bulge_mm_;
     options.threads = o_.threads;
     options.label_edge_mm = label_sizes(o_.label_edges_text, "--edge-length");
     for (const LabelReport& row : report_.labels)
@@ -605,7 +609,7 @@ class MeshRun {
   Stack stack_;
   Frame frame_;
   int axis_ = 2;
-  double pixel_mm_ = 1, gap_mm_ = 1, drawn_gap_mm_ = 0;  // drawn: of contour input, between drawn sections
+  double pixel_mm_ = 1, gap_mm_ = 1, drawn_gap_mm_ = 0, drawn_bulge_mm_ = 0;  // drawn: of contour input, between drawn sections
   InterfaceComplex faired_;                   // stack coordinates; what enhancement draws the surface to
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   Judgement beside_;

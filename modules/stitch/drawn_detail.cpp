@@ -1,6 +1,7 @@
 #include "stitch/drawn_detail.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +15,7 @@ namespace {
 constexpr double kCoarsestAcross = 24, kFinestAcross = 64;  // pixels over a typical contour
 constexpr double kThinShare = 0.05;                         // of the contours' length
 constexpr std::size_t kRaysPerSection = 200;
+constexpr double kBulgeShare = 0.75;  // of the contours' length
 
 struct Weighted {
   double value, weight;
@@ -103,6 +105,37 @@ double contour_wall_mm(const Stack& stack) {
     }
   }
   return seen.empty() ? std::numeric_limits<double>::infinity() : quantile(std::move(seen), kThinShare);
+}
+
+double drawn_bulge_mm(const Stack& stack) {
+  std::vector<Weighted> bulges;
+  for (const Section& s : stack.sections) {
+    if (s.interpolated) continue;
+    std::vector<std::array<std::int32_t, 2>> edges_of(s.points.size(), {-1, -1});  // of a point where two edges meet, else the first two
+    std::vector<char> passes(s.points.size(), 0);
+    for (std::size_t e = 0; e < s.edges.size(); ++e)
+      for (std::int32_t v : {s.edges[e].a, s.edges[e].b}) {
+        if (passes[v] < 2) edges_of[v][passes[v]] = static_cast<std::int32_t>(e);
+        passes[v] = static_cast<char>(std::min(passes[v] + 1, 3));
+      }
+    for (std::size_t e = 0; e < s.edges.size(); ++e) {
+      const auto away = [&](std::int32_t edge, std::int32_t v) {  // the direction in which an edge leaves a point
+        const SectionEdge& f = s.edges[edge];
+        const Place p = place(stack, s, v), q = place(stack, s, f.a == v ? f.b : f.a);
+        return Place{q.x - p.x, q.y - p.y};
+      };
+      double turns = 0;
+      for (std::int32_t v : {s.edges[e].a, s.edges[e].b}) {
+        if (passes[v] != 2) continue;  // a junction has no turn
+        const Place p = away(edges_of[v][0], v), q = away(edges_of[v][1], v);
+        turns += std::abs(std::atan2(p.x * q.y - p.y * q.x, -(p.x * q.x + p.y * q.y)));
+      }
+      const Place a = place(stack, s, s.edges[e].a), b = place(stack, s, s.edges[e].b);
+      const double length = std::hypot(b.x - a.x, b.y - a.y);
+      bulges.push_back({length * turns / 16, length});
+    }
+  }
+  return quantile(std::move(bulges), kBulgeShare);
 }
 
 double drawn_gap_mm(const Stack& stack) {

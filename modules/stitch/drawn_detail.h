@@ -14,6 +14,11 @@ double contour_wall_mm(const Stack& stack);
 /// of four points) a 24th of a typical contour, less where walls are thin, not below a 64th.
 double drawn_pixel_mm(const Stack& stack, double typical_edge_mm);
 
+/// How far drawn outlines bulge over their own edges, mm: of an edge, an eighth of its length times the mean turn at its ends, in radians
+/// (the height of the arc that turns as much); three quarters of the drawn contours' length bulge no more. It tells how closely a smooth
+/// outline was drawn, and of a rough one how rough it is.
+double drawn_bulge_mm(const Stack& stack);
+
 /// The typical gap between drawn sections (not interpolated ones), mm; 0 if there are fewer than two.
 double drawn_gap_mm(const Stack& stack);
 

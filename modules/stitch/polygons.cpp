@@ -15,6 +15,7 @@
 #include "stitch/drawn_detail.h"
 #include "stitch/drawn_ends.h"
 #include "stitch/missing_contours.h"
+#include "stitch/openings.h"
 #include "stitch/planar.h"
 #include "stitch/snap_rounding.h"
 
@@ -314,6 +315,7 @@ class SectionMaker {
       std::size_t inside = 0;                // sections
       std::vector<double> open_z_mm;
       double area_mm2 = 0;
+      std::string openings;  // one by one
     };
     std::map<std::pair<std::size_t, std::size_t>, Pair> pairs;
     for (std::size_t i = 0; i < masked.size(); ++i) {
@@ -324,12 +326,13 @@ class SectionMaker {
         for (std::size_t g = 0; g < files_.size(); ++g) {
           if (f == g) continue;
           double bare = 0, all = 0;
+          std::vector<OpenEdge> open;
           for (const MaskedSection::Edge& e : m.edges) {
             if (e.left[f] == e.right[f]) continue;
             const GridPoint a = m.section.points[e.a], b = m.section.points[e.b];
             const double length = std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y) * grid_;
             all += length;
-            if (!(e.left[f] ? e.right[g] : e.left[g])) bare += length;
+            if (!(e.left[f] ? e.right[g] : e.left[g])) bare += length, open.push_back({e.a, e.b, {x0_ + grid_ * a.x, y0_ + grid_ * a.y}, {x0_ + grid_ * b.x, y0_ + grid_ * b.y}});
           }
           if (all == 0 || bare > kMostlyOpen_rel * all) continue;
           Pair& p = pairs[{f, g}];
@@ -338,13 +341,14 @@ class SectionMaker {
           } else {
             p.open_z_mm.push_back(m.section.z_mm);
             p.area_mm2 += bare * thickness(i);
+            p.openings += list_openings(open, m.section.z_mm, thickness(i)) + ";";
           }
         }
     }
     for (const auto& [pair, p] : pairs)
       if (!p.open_z_mm.empty() && p.inside >= p.open_z_mm.size())
         warnings_.push_back(files_[pair.first].path + ": " + name_of(pair.first) + " lies inside " + name_of(pair.second) + ", but reaches its outline at z = " +
-                            list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " + text_of(p.area_mm2, "%.3g") + " mm2");
+                            list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " + text_of(p.area_mm2, "%.3g") + " mm2:" + p.openings.substr(0, p.openings.size() - 1));
   }
 
   /// Who lies inside whom, and who shares how much with whom.

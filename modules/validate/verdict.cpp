@@ -105,12 +105,13 @@ class Judge {
 
   void topology() {
     Verdict& v = add("topology", "Topology of the slices");
-    long surplus = 0, most = 0;
+    long surplus = 0, most = 0, loose_pieces = 0;
     Label most_label = 0;
     for (const LabelTopology& t : *in_.topology) {
       const bool loose = in_.fidelity == nullptr && t.pieces > t.implied_pieces && t.implied_pieces > 0;
       if (t.surplus() == 0 && !loose) continue;
       surplus += t.surplus();
+      if (loose) loose_pieces += t.pieces - t.implied_pieces;
       v.labels.push_back(t.label);
       worsen(v.status, Status::warn);
       v.explanation += " " + name(t.label) + ":";
@@ -120,6 +121,7 @@ class Judge {
     }
     if (l_.handles_fail > 0 && surplus >= static_cast<long>(l_.handles_fail)) v.status = Status::fail;
     v.figure = counted(static_cast<std::size_t>(surplus), "handle too many", "handles too many");
+    if (loose_pieces > 0) v.figure += ", " + counted(static_cast<std::size_t>(loose_pieces), "piece too many", "pieces too many");
     if (most_label != 0 && v.labels.size() > 1) v.figure += ", most in " + name(most_label);
     v.limit = l_.handles_fail > 0 ? "warn above 0, fail from " + std::to_string(l_.handles_fail) : "warn above 0";
     v.explanation = "Tunnels and loops of each label that no slice has: what lies inside an outline goes on in the next slice where it overlaps it." + v.explanation;

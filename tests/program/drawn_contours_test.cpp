@@ -102,7 +102,29 @@ TEST_F(DrawnContours, AWallThatItsContoursOpenIsNamed) {
   if (epi.empty()) GTEST_SKIP() << "NOT TESTED: needs ../shared/data/heart_sax_sunnybrook";
   const Ended r = succeeds({"surface", "1=" + epi, "2=" + endo, "--raw", "-o", out("a.off"), "--report", out("R.json")});
   EXPECT_TRUE(r.warns_of("label 2 lies inside label 1, but reaches its outline at z = -58.9")) << r.err;
+  EXPECT_TRUE(r.warns_of("over about 167 mm2: 141 mm2 at (163.6, 198.1, -58.9035), 26.2 mm2 at (171.9, 211.9, -58.9035)")) << "one by one: " << r.err;
+  // Slivers of wall between contours that run on each other hang on nothing, and are named one by one.
+  std::size_t loose = 0;
+  const Json with_defects = report();
+  for (const Json& d : with_defects.at("defects")) loose += d.at("kind") == "loose_piece";
+  EXPECT_EQ(static_cast<int>(loose), row(with_defects, 1).at("components").get<int>() - 1);
+  EXPECT_GT(loose, 0u);
+  EXPECT_TRUE(r.warns_of("label 1 has a piece of its own of ")) << r.err;
   EXPECT_EQ(row(report(), 1).at("genus"), 0);
+}
+
+TEST_F(DrawnContours, EitherEndIsClosedAsAsked) {
+  const std::string file = testdata("drawn/box20.cnt");
+  const Json r = surface({file, "--caps", "1:high=flat,low=round"});
+  EXPECT_EQ(row(r, 1).at("caps"), (Json{{"low", "round"}, {"high", "flat"}}));
+  EXPECT_NEAR(box(1).high[2], 21, kPlace);
+  EXPECT_LT(box(1).low[2], -0.7) << "a dome of up to half a gap";
+  EXPECT_GE(box(1).low[2], -1.5);
+  EXPECT_EQ(row(surface({file, "--caps", "1:low=round"}), 1).at("caps"), (Json{{"low", "round"}, {"high", "flat"}})) << "the other end by itself";
+  for (const char* name : {"a.off", "R.json", "a_1.off"}) std::remove(out(name).c_str());
+  fails(2, {"surface", file, "--caps", "1:high=flat,high=round", "-o", out("b.off")}, {"the high end of label '1' is named twice"});
+  fails(2, {"surface", file, "--caps", "1:high=oval", "-o", out("b.off")}, {"unknown cap 'oval'"});
+  fails(3, {"surface", file, "--caps", "1:top=flat", "-o", out("b.off")}, {"--caps 1:top"});
 }
 
 TEST_F(DrawnContours, PiecesAreLeftOutWhereAsked) {
@@ -135,7 +157,13 @@ TEST_F(DrawnContours, PiecesAreLeftOutWhereAsked) {
   const Json last = report();
   for (const Json& w : last.at("warnings")) said = said || w.get<std::string>().find("2 of its 4 pieces") != std::string::npos;
   EXPECT_TRUE(said);
+  // What cannot be meant is refused before anything is written.
+  for (const char* name : {"a.off", "R.json", "a_1.off"}) std::remove(out(name).c_str());
+  fails(2, {"surface", file, "--min-piece", "1e12", "-o", out("b.off")}, {"no piece of any label is as large", "--min-piece 1e+12"});
+  for (const char* bad : {"0", "-5", "nan", "x"}) fails(2, {"surface", file, "--min-piece", bad, "-o", out("b.off")}, {"--min-piece", bad});
+  for (const char* bad : {"0", "-1", "two", "1.5"}) fails(2, {"surface", file, "-o", out("b.off"), "--keep-largest", bad}, {"--keep-largest", bad});
   // Voxels alike.
+  fails(2, {"surface", testdata("noise.nii.gz"), "--raw", "--min-piece", "1e12", "-o", out("b.off")}, {"no piece of any label is as large"});
   const Json all = surface({testdata("noise.nii.gz"), "--raw"}), one = surface({testdata("noise.nii.gz"), "--raw", "--keep-largest"});
   for (const Json& l : one.at("labels")) {
     EXPECT_EQ(l.at("components"), 1);

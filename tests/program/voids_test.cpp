@@ -99,10 +99,39 @@ TEST_F(Voids, OfALabelVolumeAreWhatTheyWouldBeFilled) {
   EXPECT_GT(number(hollow, 2, "dice"), 0.99);
 }
 
+TEST_F(Voids, StayApartWhereTheOthersAreMerged) {
+  // The wall in two halves, side by side, and a hollow in both.
+  const auto beside = [&](const std::string& name, double x0, double x1) {
+    std::ostringstream text;
+    text << "S 7\n";
+    for (int k = 0; k <= 6; ++k) text << "v 4 z " << 5 * k << "\n{\n" << x0 << " -20\n" << x1 << " -20\n" << x1 << " 20\n" << x0 << " 20\n}\n";
+    return write(name, text.str());
+  };
+  const std::vector<std::string> halves = {"3=" + beside("left.cnt", -20, 0), "1=" + beside("right.cnt", 0, 20), "2=" + squares("hollow.cnt", 10, 2, 4)};
+  succeeds(with({"mesh"}, halves, {"--void", "2", "--merge", "-o", out("a.vtu"), "--report", out("R.json")}));
+  const Json r = report();
+  ASSERT_EQ(r.at("labels").size(), 2u);
+  EXPECT_EQ(row(r, 2).at("void"), true);
+  EXPECT_EQ(row(r, 1).at("components"), 1);
+  EXPECT_NEAR(number(r, 1, "tet_volume_mm3"), 40 * 40 * 30 - 20 * 20 * 10, 0.005 * 44000);
+  EXPECT_NEAR(number(r, 2, "surface_volume_mm3"), 20 * 20 * 10, 0.005 * 4000);
+  // Voxels: the other labels of a heart become one beside a void.
+  succeeds({"surface", testdata("heart4.nii.gz"), "--raw", "-o", out("a.vtp"), "--report", out("R.json")});
+  const Json apart = report();
+  const int first = apart.at("labels")[0].at("label"), last = apart.at("labels").back().at("label");
+  succeeds({"surface", testdata("heart4.nii.gz"), "--raw", "--merge", "--void", std::to_string(last), "-o", out("a.vtp"), "--report", out("R.json")});
+  const Json merged = report();
+  ASSERT_EQ(merged.at("labels").size(), 2u);
+  double sum = 0;
+  for (const Json& l : apart.at("labels"))
+    if (l.at("label") != last) sum += l.at("input_volume_mm3").get<double>();
+  EXPECT_NEAR(number(merged, first, "input_volume_mm3"), sum, 1e-6);
+  EXPECT_NEAR(number(merged, last, "input_volume_mm3"), number(apart, last, "input_volume_mm3"), 1e-6);
+}
+
 TEST_F(Voids, AreAskedForInVain) {
   fails(2, with({"mesh"}, drawn(2, 4), {"--void", "1,2", "-o", out("a.vtu")}), {"every label is a void"});
   fails(3, with({"mesh"}, drawn(2, 4), {"--void", "7", "-o", out("a.vtu")}), {"label '7' is not in the input", "--void 7"});
-  fails(2, with({"mesh"}, drawn(2, 4), {"--void", "2", "--merge", "-o", out("a.vtu")}), {"--merge", "--void"});
   fails(2, {"validate", out("a.vtu"), "--void", "2"}, {"--against"});
 }
 
