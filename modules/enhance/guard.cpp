@@ -7,6 +7,22 @@
 #include "base/parallel.h"
 
 namespace stackmesh {
+namespace {
+
+/// True when one of two triangles at a common edge turned through the other about it: they are on the other side of each other than
+/// before, and not by way of being flat. No exact test of crossings sees that, as both states are free of them.
+bool passed_through(const Corners3& s_before, const Corners3& t_before, const Corners3& s, const Corners3& t, const SharedCorners& h, double cosine) {
+  if (cosine < -0.5) return false;
+  const auto side = [&](const Corners3& x, const Corners3& y) {
+    const Vec3 &a = x[h.in_s[0]], &b = x[h.in_s[1]], &c = x[3 - h.in_s[0] - h.in_s[1]], &d = y[3 - h.in_t[0] - h.in_t[1]];
+    return dot(cross(b - a, c - a), d - a);
+  };
+  const double was = side(s_before, t_before), is = side(s, t);
+  if ((was > 0) == (is > 0) || was == 0 || is == 0) return false;
+  return sheet_cosine(s_before, t_before, h) + cosine > 0;
+}
+
+}  // namespace
 
 TriangleGrid::Box TriangleGrid::box_of(const Corners3& c, double margin) {
   Box b;
@@ -124,6 +140,28 @@ bool Guard::was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, d
   return false;
 }
 
+bool Guard::turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w, const Corners3& t,
+                           const SharedCorners& h, double cosine, const Change& c) const {
+  if (cosine < -0.5) return false;
+  const std::int32_t a = v[h.in_s[0]], b = v[h.in_s[1]];
+  if (a == c.moved || b == c.moved || w[0] == c.moved || w[1] == c.moved || w[2] == c.moved) return false;  // their edge moves as well
+  for (std::int32_t r : *c.removed) {
+    const auto& old = mesh_.triangles[r].v;
+    const auto at = [&](std::int32_t x) { return static_cast<int>(std::find(old.begin(), old.end(), x) - old.begin()); };
+    const int i = at(a), j = at(b);
+    if (i == 3 || j == 3 || mesh_.triangles[r].v == w) continue;
+    SharedCorners before = h;
+    before.in_s[0] = i;
+    before.in_s[1] = j;
+    // The edge's only triangle that goes is what the new one stood for.
+    const Corners3 o = corners(old, nullptr);
+    const Vec3 &p = o[i], &q = o[j], &x = o[3 - i - j], &y = t[3 - h.in_t[0] - h.in_t[1]], &z = s[3 - h.in_s[0] - h.in_s[1]];
+    const double was = dot(cross(q - p, x - p), y - p), is = dot(cross(q - p, z - p), y - p);
+    if ((was > 0) != (is > 0) && was != 0 && is != 0 && sheet_cosine(o, t, before) + cosine > 0) return true;
+  }
+  return false;
+}
+
 bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
                          const std::array<std::int32_t, 3>& w, const Change& c) {
   const SharedCorners h = shared_corners(v, w);
@@ -137,6 +175,7 @@ bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s
   }
   if (h.count == 2) {
     const double cosine = sheet_cosine(s, t, h);
+    if (turned_through(v, s, w, t, h, cosine, c)) return ++refused_angle, false;
     if (cosine <= cosine_limit_) return true;
     if (cosine > narrowest_before(c) + 1e-9 || triangles_meet(s, t, h)) return ++refused_angle, false;
     return true;
@@ -206,6 +245,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
     }
     if (h.count == 2) {
       const double cosine = sheet_cosine(s, t, h);
+      if (passed_through(at(before, i), at(before, j), s, t, h, cosine)) return true;
       if (cosine <= limit) return false;
       return cosine > sheet_cosine(at(before, i), at(before, j), h) || triangles_meet(s, t, h);
     }

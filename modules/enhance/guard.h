@@ -105,6 +105,9 @@ class Guard {
   Corners3 corners(const std::array<std::int32_t, 3>& v, const Change* c) const;
   bool pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
                     const std::array<std::int32_t, 3>& w, const Change& c);
+  /// True when the new triangle turns through another one at their common edge, against the one of that edge which goes.
+  bool turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w, const Corners3& t,
+                      const SharedCorners& h, double cosine, const Change& c) const;
   double narrowest_before(const Change& c) const;
   bool was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, double squared) const;
 

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "validate/boundaries.h"
+#include "validate/label_agreement.h"
 #include "validate/self_intersections.h"
 #include "validate/statistics.h"
 
@@ -25,6 +26,11 @@ SurfaceCheck check_surface(const InterfaceComplex& complex, const SurfaceCheckOp
   check.self_intersections = found.count;
   check.degenerate_triangles = found.degenerate;
   check.intersecting_pairs = std::move(found.pairs);
+  if (check.open_edges == 0 && check.self_intersections == 0) {
+    LabelConflicts conflicts = find_label_conflicts(complex, options.threads, options.list_limit);
+    check.self_intersections = conflicts.count;
+    check.intersecting_pairs = std::move(conflicts.pairs);
+  }
 
   std::vector<double> angles(complex.triangles.size());
   constexpr std::size_t kChunk = 1 << 14;

@@ -27,7 +27,9 @@ struct SurfaceCheck {
   std::size_t vertices = 0, triangles = 0;
   std::size_t open_edges = 0;  ///< undirected edges at which the boundary of some label does not cancel
   std::size_t self_intersections =
-      0;  ///< pairs of triangles that meet beyond what they share, and degenerate triangles
+      0;  ///< pairs of triangles that meet beyond what they share, and degenerate triangles; where there are none, pairs of
+          ///< triangles whose labels contradict each other: sheets that passed through each other at a common edge, pieces in the
+          ///< wrong label (validate/label_agreement.h)
   std::size_t nonmanifold_edges = 0;     ///< undirected edges where more than two triangles bound one label
   std::size_t degenerate_triangles = 0;  ///< corners on one line
   /// The smallest angle of a triangle: least, 1st percentile and median over the triangles.
