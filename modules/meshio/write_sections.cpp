@@ -93,7 +93,16 @@ void write_json(std::FILE* f, const Stack& stack) {
   std::fprintf(f, "\n]}\n");
 }
 
+/// Where a contour file's coordinates start: the format has no axes, so only sections that lie in the world's own can be put in their place.
+Vec3 start_of(const Stack& stack) {
+  const Frame plain;
+  for (int k = 0; k < 3; ++k)
+    if (norm(stack.frame.axes[k] - plain.axes[k]) > 1e-6) return {};
+  return stack.frame.origin;
+}
+
 void write_cnt(std::FILE* f, const Stack& stack, Label label) {
+  const Vec3 start = start_of(stack);
   std::vector<std::pair<double, std::vector<Loop>>> sections;
   for (const Section& s : stack.sections) {
     std::vector<Loop> loops = loops_of(stack, s, label);
@@ -103,10 +112,10 @@ void write_cnt(std::FILE* f, const Stack& stack, Label label) {
   for (const auto& [z, loops] : sections) {
     std::size_t count = 0;
     for (const Loop& l : loops) count += l.size();
-    std::fprintf(f, "v %zu z %.17g\n", count, z);
+    std::fprintf(f, "v %zu z %.17g\n", count, z + start.z);
     for (const Loop& l : loops) {
       std::fprintf(f, "{\n");
-      for (const auto& p : l) std::fprintf(f, "%.17g %.17g\n", p[0], p[1]);
+      for (const auto& p : l) std::fprintf(f, "%.17g %.17g\n", p[0] + start.x, p[1] + start.y);
       std::fprintf(f, "}\n");
     }
   }

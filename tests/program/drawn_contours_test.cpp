@@ -47,6 +47,16 @@ class DrawnContours : public ProgramTest {
 
 constexpr double kPlace = 0.05;
 
+TEST_F(DrawnContours, WrittenAsAContourFileTheyLieWhereTheyWereDrawn) {
+  succeeds({"contours", testdata("drawn/rt_box100.dcm"), "-o", out("box.cnt")});
+  surface({out("box.cnt")});
+  const Box b = box(1);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_NEAR(b.low[k], -50, kPlace);
+    EXPECT_NEAR(b.high[k], 50, kPlace);
+  }
+}
+
 TEST_F(DrawnContours, BoxesOfFourPointsStayBoxes) {
   has(surface({testdata("drawn/rt_box100.dcm")}), 1, 100 * 100 * 24);
   Box b = box(1);
