@@ -47,10 +47,9 @@ WHAT = {
 
 PICTURES = [
     "![heart](heart.png)", "",
-    "*The heart stitched, with `--edge-length 3`, and with `--edge-length 3 --smooth 15`: `heart_totalseg/heart.nii.gz`. Its voxels form "
-    "steps of two; the default stays near them (0.34 mm), more smoothing takes them away (0.47 mm).*", "",
+    "*The heart with `--edge-length 3`, before sections were faired (as `--band 0 --as-stored` still gives it) and now: `heart_totalseg/heart.nii.gz`.*", "",
     "![skull, enhanced](skull_enhanced.png)", "",
-    "*The skull stitched, with `--edge-length 2.5`, and with no option.*", "",
+    "*The skull stitched from its pixels' outlines, and with `--edge-length 2.5` before sections were faired and now.*", "",
     "![foot](foot.png)", "",
     "*Eight groups of bones of a foot, from contours: with and without virtual sections (docs/interpolate.md).*", "",
     "![thick ventricle](ventricle.png)", "",
@@ -67,19 +66,20 @@ PICTURES = [
 DRAWN = """
 mkdir -p build/pictures; cd build/pictures; D=../../../shared/data; S=$D/heart_sax_sunnybrook/SC-HF-I-4
 ../stackmesh mesh ../../testdata/femur.nii.gz -o femur.vtp -o femur.vtu
-s="--no-enhance --interpolate 0"
+s="--no-enhance --interpolate 0 --band 0"
 ../stackmesh surface $D/skull_ct_invesalius/bone_mask.nii.gz $s -o skull.vtp
 ../stackmesh surface $D/skull_ct_invesalius/bone_mask.nii.gz --edge-length 2.5 -o skull2.vtp
-../stackmesh surface $D/skull_ct_invesalius/bone_mask.nii.gz -o skull1.vtp
-for n in 5 15; do ../stackmesh surface $D/heart_totalseg/heart.nii.gz --edge-length 3 --smooth $n -o heart$n.vtp; done
-../stackmesh surface $D/heart_totalseg/heart.nii.gz $s -o heart.vtp
+old="--band 0 --as-stored"
+../stackmesh surface $D/heart_totalseg/heart.nii.gz --edge-length 3 $old -o heart0.vtp
+../stackmesh surface $D/heart_totalseg/heart.nii.gz --edge-length 3 -o heart3.vtp
+../stackmesh surface $D/skull_ct_invesalius/bone_mask.nii.gz --edge-length 2.5 $old -o skull0.vtp
 ../stackmesh mesh $D/torso_totalseg/torso_3mm_61labels.nii.gz $s -o torso.vtp -o torso.vtu
 ../stackmesh mesh 1=$S/epi_ED.cnt 2=$S/endo_ED.cnt $s -o sax.vtp -o sax.vtu; cat $S/epi_ED.cnt $S/endo_ED.cnt > sax.cnt
 r=../../apps/render.py; o=../../docs; cut="tetrahedra, cut open"
 $r femur.vtp@25,8 femur.vtu@cut=y=-69.5@25,8 -o $o/femur.png --size 400x760 --title surface --title "$cut"
-$r heart.vtp heart5.vtp heart15.vtp -o $o/heart.png --size 560x560 --title stitched --title "3 mm" --title "3 mm, smooth 15"
-$r skull.vtp@35,8 skull2.vtp@35,8 skull1.vtp@35,8 -o $o/skull_enhanced.png --size 560x560 --title stitched --title "2.5 mm" \\
-  --title "no option"
+$r heart0.vtp heart3.vtp -o $o/heart.png --size 560x560 --title "before fairing" --title now
+$r skull.vtp@35,8 skull0.vtp@35,8 skull2.vtp@35,8 -o $o/skull_enhanced.png --size 560x560 --title "stitched from the pixels' outlines" \\
+  --title "2.5 mm, before fairing" --title "2.5 mm, now"
 $r skull.vtp@35,8 skull.vtp@cut=x@60,8 -o $o/skull.png --size 500x420 --title surface --title "cut open"
 $r torso.vtp@20,6 torso.vtu@cut=y@20,6 -o $o/torso.png --size 430x500 --title surface --title "$cut"
 $r sax.cnt@200,22 sax.vtp@200,22 sax.vtu@cut=y@200,22 -o $o/heart_sax.png --size 440x450 --title contours --title surface \\
