@@ -33,6 +33,7 @@ constexpr double kSheetGap = 0.2;         // of the edge length: what sheets kee
 constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
 constexpr double kSettled = 0.01;         // pixels: vertices that near the faired surface stay where they are
 constexpr double kDrawnCorner_deg = 35;
+constexpr double kMuchShorter = 0.7, kMuchOfIt = 0.1;  // shares of the length asked for, and of the surface, from which on shorter edges are told
 constexpr double kDrawnBulges = 6, kDrawnDeviation_mm = 0.15;  // the default deviation of smooth drawn outlines: so many bulges, at least that
 constexpr double kLeastSmoothing = 1e-3;  // of the smoothing's limits, for outlines without any roughness
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
@@ -339,6 +340,31 @@ class Enhancement {
     return triangles;
   }
 
+  /// Says on how much of the surface edges are much shorter than asked for, and why.
+  void say_where_shorter(const ComplexMesh& mesh, const std::vector<double>& size) {
+    if (!o_.edge_length_mm) return;
+    const double least = kMuchShorter * *o_.edge_length_mm;
+    double all = 0, walls = 0, pieces = 0, bends = 0;
+    for (const MeshTriangle& t : mesh.triangles) {
+      const auto [below, above] = mesh.labels_of(t.patch);
+      if (o_.label_edge_mm.count(below) + o_.label_edge_mm.count(above) > 0) continue;  // with lengths of their own
+      const double third = norm(mesh.area_vector(t.v)) / 3;
+      for (std::int32_t v : t.v) {
+        all += third;
+        if (size[v] >= least) continue;
+        const double by_wall = wall_[v] < wall_reach_ ? 3 * wall_[v] : 1e300, by_piece = 0.5 * shell_[v];  // as edge_sizes has them
+        (std::min(by_wall, by_piece) >= least ? bends : by_wall < by_piece ? walls : pieces) += third;
+      }
+    }
+    const double share = (walls + pieces + bends) / std::max(all, 1e-300);
+    if (share < kMuchOfIt) return;
+    std::string why;
+    for (const auto& [part, what] : {std::pair{walls, "where walls are thin"}, {pieces, "on small pieces"}, {bends, "where it bends"}})
+      if (part > 0.005 * all) why += (why.empty() ? "" : ", ") + number(std::round(100 * part / all)) + " % " + what;
+    warn("edges are shorter than the " + number(*o_.edge_length_mm) + " mm asked for on " + number(std::round(100 * share)) + " % of the surface (" + why +
+         "), as longer ones would cut off too much there");
+  }
+
   void refuse_giants(double triangles) const {
     if (triangles > kTriangleLimit)
       fail_usage("the edge lengths asked for mean about " + number(triangles / 1e6) +
@@ -350,6 +376,7 @@ class Enhancement {
   void remesh_mesh(ComplexMesh& mesh) {
     const SizingOptions sizes = sizing(mesh);
     std::vector<double> size = edge_sizes(mesh, sizes);
+    say_where_shorter(mesh, size);
     RemeshOptions r;
     if ((o_.target_tets || o_.usual_target) && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);

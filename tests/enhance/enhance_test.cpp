@@ -338,6 +338,21 @@ TEST(EnhanceComplex, RefusesWhatMakesNoSense) {
   EXPECT_EQ(kind(o), 2);
 }
 
+TEST(EnhanceComplex, ItIsSaidWhereEdgesStayShorterAndWhy) {
+  const auto told = [](const InterfaceComplex& c, double edge_mm) {
+    EnhanceOptions o;
+    o.edge_length_mm = edge_mm;
+    Progress quiet;
+    std::string all;
+    for (const std::string& w : enhance_complex(c, o, quiet).warnings) all += w + "\n";
+    return all;
+  };
+  EXPECT_EQ(told(ball(10, 4), 2).find("shorter than"), std::string::npos);
+  const std::string plates = told(two_plates(20, 0.5, 5), 5);
+  EXPECT_NE(plates.find("shorter than the 5 mm"), std::string::npos) << plates;
+  EXPECT_NE(plates.find("% where walls are thin"), std::string::npos) << plates;
+}
+
 TEST(EnhanceComplex, SaysSoWhenTheEdgeLengthIsTooLarge) {
   EnhanceOptions o;
   o.edge_length_mm = 100;
