@@ -333,7 +333,7 @@ class Enhancement {
     }
     if (longer > 1.02) {
       result_.coarsened = longer;
-      for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], 0.5 * shell_[v]));
+      for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], kOfShell * shell_[v]));
       warn("edges were made " + number(longer) + " times longer than the default, for a target of " +
            std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones");
     }
@@ -352,7 +352,7 @@ class Enhancement {
       for (std::int32_t v : t.v) {
         all += third;
         if (size[v] >= least) continue;
-        const double by_wall = wall_[v] < wall_reach_ ? 3 * wall_[v] : 1e300, by_piece = 0.5 * shell_[v];  // as edge_sizes has them
+        const double by_wall = wall_[v] < wall_reach_ ? kAcrossWall * wall_[v] : 1e300, by_piece = kOfShell * shell_[v];
         (std::min(by_wall, by_piece) >= least ? bends : by_wall < by_piece ? walls : pieces) += third;
       }
     }

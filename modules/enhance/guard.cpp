@@ -9,17 +9,19 @@
 namespace stackmesh {
 namespace {
 
+constexpr double kWide = -0.5;  // cosine: two sheets further apart than this did not just turn through each other
+
+/// On which side of the triangle p q x the point y lies: the sign.
+double side_of(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& y) { return dot(cross(q - p, x - p), y - p); }
+
 /// True when one of two triangles at a common edge turned through the other about it: they are on the other side of each other than
 /// before, and not by way of being flat. No exact test of crossings sees that, as both states are free of them.
-bool passed_through(const Corners3& s_before, const Corners3& t_before, const Corners3& s, const Corners3& t, const SharedCorners& h, double cosine) {
-  if (cosine < -0.5) return false;
-  const auto side = [&](const Corners3& x, const Corners3& y) {
-    const Vec3 &a = x[h.in_s[0]], &b = x[h.in_s[1]], &c = x[3 - h.in_s[0] - h.in_s[1]], &d = y[3 - h.in_t[0] - h.in_t[1]];
-    return dot(cross(b - a, c - a), d - a);
-  };
-  const double was = side(s_before, t_before), is = side(s, t);
-  if ((was > 0) == (is > 0) || was == 0 || is == 0) return false;
-  return sheet_cosine(s_before, t_before, h) + cosine > 0;
+bool turned_past(double side_before, double cosine_before, double side, double cosine) {
+  return (side_before > 0) != (side > 0) && side_before != 0 && side != 0 && cosine_before + cosine > 0;
+}
+
+double side_of(const Corners3& s, const Corners3& t, const SharedCorners& h) {
+  return side_of(s[h.in_s[0]], s[h.in_s[1]], s[3 - h.in_s[0] - h.in_s[1]], t[3 - h.in_t[0] - h.in_t[1]]);
 }
 
 }  // namespace
@@ -142,7 +144,7 @@ bool Guard::was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, d
 
 bool Guard::turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w, const Corners3& t,
                            const SharedCorners& h, double cosine, const Change& c) const {
-  if (cosine < -0.5) return false;
+  if (cosine < kWide) return false;
   const std::int32_t a = v[h.in_s[0]], b = v[h.in_s[1]];
   if (a == c.moved || b == c.moved || w[0] == c.moved || w[1] == c.moved || w[2] == c.moved) return false;  // their edge moves as well
   for (std::int32_t r : *c.removed) {
@@ -155,9 +157,8 @@ bool Guard::turned_through(const std::array<std::int32_t, 3>& v, const Corners3&
     before.in_s[1] = j;
     // The edge's only triangle that goes is what the new one stood for.
     const Corners3 o = corners(old, nullptr);
-    const Vec3 &p = o[i], &q = o[j], &x = o[3 - i - j], &y = t[3 - h.in_t[0] - h.in_t[1]], &z = s[3 - h.in_s[0] - h.in_s[1]];
-    const double was = dot(cross(q - p, x - p), y - p), is = dot(cross(q - p, z - p), y - p);
-    if ((was > 0) != (is > 0) && was != 0 && is != 0 && sheet_cosine(o, t, before) + cosine > 0) return true;
+    const Vec3 &y = t[3 - h.in_t[0] - h.in_t[1]], &z = s[3 - h.in_s[0] - h.in_s[1]];
+    if (turned_past(side_of(o, t, before), sheet_cosine(o, t, before), side_of(o[i], o[j], z, y), cosine)) return true;
   }
   return false;
 }
@@ -245,9 +246,12 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
     }
     if (h.count == 2) {
       const double cosine = sheet_cosine(s, t, h);
-      if (passed_through(at(before, i), at(before, j), s, t, h, cosine)) return true;
+      if (cosine < kWide) return false;
+      const Corners3 s_before = at(before, i), t_before = at(before, j);
+      const double cosine_before = sheet_cosine(s_before, t_before, h);
+      if (turned_past(side_of(s_before, t_before, h), cosine_before, side_of(s, t, h), cosine)) return true;
       if (cosine <= limit) return false;
-      return cosine > sheet_cosine(at(before, i), at(before, j), h) || triangles_meet(s, t, h);
+      return cosine > cosine_before || triangles_meet(s, t, h);
     }
     return triangles_meet(s, t, h);
   };

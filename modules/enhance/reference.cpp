@@ -19,16 +19,20 @@ std::size_t Reference::Cells::bucket(std::int32_t i, std::int32_t j, std::int32_
 
 template <class Corners>
 void Reference::Cells::build(std::size_t count, double cell_mm, int threads, Corners corners) {
+  const auto extent = [&](std::size_t n) {
+    Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    for (const Vec3& p : corners(n)) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return std::pair{low, high};
+  };
   // Needles much longer than a cell (outlines drawn with tens of thousands of points) would be listed in thousands of cells each.
   constexpr double kMostCells = 200;  // of a face, on average
   for (double most = kMostCells * static_cast<double>(count);; cell_mm *= 2) {
     double sum = 0;
     for (std::size_t n = 0; n < count && sum <= most; ++n) {
-      Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-      for (const Vec3& p : corners(n)) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
+      const auto [low, high] = extent(n);
       sum += (1 + (high.x - low.x) / cell_mm) * (1 + (high.y - low.y) / cell_mm) * (1 + (high.z - low.z) / cell_mm);
     }
     if (sum <= most) break;
@@ -39,11 +43,7 @@ void Reference::Cells::build(std::size_t count, double cell_mm, int threads, Cor
   mask = size - 1;
   first.assign(size + 1, 0);
   const auto each_cell = [&](std::size_t n, auto body) {
-    Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    for (const Vec3& p : corners(n)) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
+    const auto [low, high] = extent(n);
     for (std::int32_t i = cell(low.x); i <= cell(high.x); ++i)
       for (std::int32_t j = cell(low.y); j <= cell(high.y); ++j)
         for (std::int32_t k = cell(low.z); k <= cell(high.z); ++k) body(bucket(i, j, k));

@@ -13,7 +13,6 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kAcross = 3;       // edges of a thin wall are at most this many times as long as it is thick
 constexpr double kTurn = 0.34;      // over one edge of a uniform length a surface turns by no more than this, radians,
 constexpr double kShortest = 0.8;   // but edges are no shorter for it than this share of the length
 constexpr double kTurnByCurvature = 0.4;  // the same for lengths by curvature, down to the smallest length
@@ -153,8 +152,8 @@ class Sizing {
     const std::vector<double>&thin = o_.wall_mm, &shell = o_.shell_mm;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       const double least = std::min(o_.thin_min_mm, size_[v]);
-      if (thin[v] < reach) size_[v] = std::clamp(kAcross * thin[v], least, size_[v]);
-      size_[v] = std::min(size_[v], 0.5 * shell[v]);
+      if (thin[v] < reach) size_[v] = std::clamp(kAcrossWall * thin[v], least, size_[v]);
+      size_[v] = std::min(size_[v], kOfShell * shell[v]);
     });
     keep_volumes(thin);
   }

@@ -45,6 +45,9 @@ void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>&
 /// Edge length asked for at every vertex, mm.
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options);
 
+/// Edges of a thin wall are at most this many times as long as it is thick, and this share of a small closed shell's size.
+constexpr double kAcrossWall = 3, kOfShell = 0.5;
+
 /// Area of a triangle as it comes out, over the square of the edge length asked for.
 constexpr double kTriangleArea = 0.39;
 
