@@ -8,7 +8,7 @@
 
 #include "base/progress.h"
 #include "pipeline/input.h"
-#include "pipeline/volume_sections.h"
+#include "sections/volume_sections.h"
 #include "stitch/stitch.h"
 
 namespace stackmesh::app {

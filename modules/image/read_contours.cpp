@@ -73,7 +73,7 @@ class Parser {
  public:
   Parser(const std::string& path, std::string_view text) : path_(path), tokens_(text) {}
 
-  void run(ContourFile& file) {
+  void run(LabelContours& file) {
     keyword("s");
     const std::int64_t announced = count("sections");
     while (!tokens_.peek().end()) read_section(file);
@@ -127,7 +127,7 @@ class Parser {
     return value;
   }
 
-  void read_section(ContourFile& file) {
+  void read_section(LabelContours& file) {
     keyword("v");
     const std::int64_t announced = count("vertices");
     keyword("z");
@@ -195,7 +195,7 @@ class Parser {
   std::string repeats_where_;
 };
 
-void sort_sections(ContourFile& file) {
+void sort_sections(LabelContours& file) {
   std::vector<std::size_t> order(file.sections.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -213,7 +213,7 @@ void sort_sections(ContourFile& file) {
 }
 
 /// Splits "LABEL=FILE"; a '=' in a folder's or an existing file's name is no separator.
-void split_pair(const std::string& text, ContourFile& file) {
+void split_pair(const std::string& text, LabelContours& file) {
   file.path = text;
   const std::size_t equal = text.find('=');
   std::error_code ignored;
@@ -241,8 +241,8 @@ bool is_contour_input(const std::string& path) {
   return path.size() > 4 && lower_case(path.substr(path.size() - 4)) == ".cnt";
 }
 
-ContourFile read_contour_file(const std::string& path_or_pair) {
-  ContourFile file;
+LabelContours read_contour_file(const std::string& path_or_pair) {
+  LabelContours file;
   split_pair(path_or_pair, file);
   std::error_code error;
   const auto status = std::filesystem::status(file.path, error);

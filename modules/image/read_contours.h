@@ -12,6 +12,6 @@ bool is_contour_input(const std::string& path);
 /// `{ }`, one `x y` a line, mm. The argument is "heart.cnt" (label 1), "3=heart.cnt" or "Heart=heart.cnt"
 /// (label 0).
 /// @throws Error(input) naming file and line, or section and contour.
-ContourFile read_contour_file(const std::string& path_or_pair);
+LabelContours read_contour_file(const std::string& path_or_pair);
 
 }  // namespace stackmesh

@@ -42,14 +42,14 @@ class StructureSetReader {
   StructureSet run() {
     read_structures();
     std::vector<LabelInfo> known = {{0, ""}};
-    for (const ContourFile& s : set_.structures) known.push_back({s.label, s.name});
+    for (const LabelContours& s : set_.structures) known.push_back({s.label, s.name});
     for (std::size_t k : labels_in_order(known, labels_)) chosen_.push_back(k - 1);
     read_contours();
     find_planes();
     for (RawContour& c : contours_) place(c);
     StructureSet chosen;
     for (std::size_t k : chosen_) {
-      ContourFile& s = set_.structures[k];
+      LabelContours& s = set_.structures[k];
       if (s.sections.empty() && !labels_.empty())
         fail_input("structure '" + s.name + "' has no closed contour", path_, "leave it out of --label, or draw it");
       if (s.sections.empty()) continue;
@@ -73,7 +73,7 @@ class StructureSetReader {
     std::vector<std::size_t> unnumbered;
     for (DcmItem* item : items_of(data_, DCM_StructureSetROISequence)) {
       const std::optional<double> number = number_of(*item, DCM_ROINumber, path_);
-      ContourFile s;
+      LabelContours s;
       s.path = path_;
       s.name = text_of(*item, DCM_ROIName);
       if (number && std::abs(*number) < 1e15) by_number_.emplace(static_cast<long>(*number), set_.structures.size());
@@ -90,7 +90,7 @@ class StructureSetReader {
       set_.warnings.push_back(path_ + ": structure '" + set_.structures[k].name + "' has no ROI number of its own above 0; it becomes label " +
                               std::to_string(next));
     }
-    for (ContourFile& s : set_.structures)
+    for (LabelContours& s : set_.structures)
       if (s.name.empty()) s.name = "structure_" + std::to_string(s.label);
   }
 
@@ -215,7 +215,7 @@ class StructureSetReader {
     set_.structures[c.structure].sections.push_back(std::move(section));
   }
 
-  static void merge_heights(ContourFile& s) {
+  static void merge_heights(LabelContours& s) {
     std::stable_sort(s.sections.begin(), s.sections.end(), [](const ContourSection& a, const ContourSection& b) { return a.z_mm < b.z_mm; });
     std::vector<ContourSection> merged;
     for (ContourSection& c : s.sections) {

@@ -8,7 +8,7 @@ namespace stackmesh {
 
 /// The structures of a DICOM RTSTRUCT file.
 struct StructureSet {
-  std::vector<ContourFile> structures;  ///< those asked for, in the order asked (else the file's), each with contours
+  std::vector<LabelContours> structures;  ///< those asked for, in the order asked (else the file's), each with contours
   Frame frame;                          ///< plane coordinates and height to LPS
   std::vector<std::string> warnings;
 };

@@ -22,7 +22,7 @@ struct ContourSection {
 };
 
 /// The contours of one label, as one file or one structure of a file holds them. Orientation and order of the polygons are free.
-struct ContourFile {
+struct LabelContours {
   std::string path;
   Label label = 1;  ///< 0: the caller numbers it
   std::string name;

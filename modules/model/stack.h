@@ -23,7 +23,7 @@ struct SectionEdge {
 };
 
 /// A section: a planar partition of the plane z = z_mm into labels, given by its edges. Around every face the
-/// labels of the edges agree; outside of everything is the background. Once noded (see stitch/snap_rounding.h),
+/// labels of the edges agree; outside of everything is the background. Once noded (see planar/snap_rounding.h),
 /// edges meet at common end points only.
 struct Section {
   double z_mm = 0;
@@ -49,7 +49,7 @@ struct DrawnEnds {
 /// Sections in ascending z, on one in-plane grid, and what they stand for.
 struct Stack {
   double grid_x_mm = 1, grid_y_mm = 1;  ///< size of a grid unit along x and y
-  double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for drawn contours their detail (stitch/drawn_detail.h)
+  double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for drawn contours their detail (sections/drawn_detail.h)
   bool slices = true;   ///< true: a section stands for a slice that reaches half a gap to either side; false: plane cuts
   double end_gap_mm = 0;  ///< gap that the first and last section stand for; 0: the gap to the next real one
   std::vector<Section> sections;

@@ -11,16 +11,16 @@
 #include "image/read_contours.h"
 #include "image/read_labels.h"
 #include "image/read_structure_set.h"
-#include "stitch/polygons.h"
+#include "sections/polygons.h"
 
 namespace stackmesh {
 namespace {
 
 /// How the drawn labels are to end.
-void choose_caps(const InputOptions& options, const std::vector<ContourFile>& files, ContourStackOptions& contours) {
+void choose_caps(const InputOptions& options, const std::vector<LabelContours>& files, ContourStackOptions& contours) {
   contours.caps = options.caps;
   std::vector<LabelInfo> known = {{0, ""}};
-  for (const ContourFile& f : files) known.push_back({f.label, f.name});
+  for (const LabelContours& f : files) known.push_back({f.label, f.name});
   for (const auto& [text, caps] : options.label_caps)
     for (std::size_t k : resolve_labels(known, text, "--caps")) contours.label_caps[known[k].number] = caps;
 }
@@ -28,7 +28,7 @@ void choose_caps(const InputOptions& options, const std::vector<ContourFile>& fi
 void read_contours(const InputOptions& options, Input& input) {
   if (options.spacing_mm)
     fail_usage("--spacing is for PNG/TIFF slices", options.paths[0], "leave it out: contour files are in mm");
-  std::vector<ContourFile> files;
+  std::vector<LabelContours> files;
   for (const std::string& path : options.paths) {
     if (!is_contour_input(path)) fail_usage("a contour file cannot be mixed with other input", path, "give .cnt files only");
     files.push_back(read_contour_file(path));
@@ -41,7 +41,7 @@ void read_contours(const InputOptions& options, Input& input) {
     if (files[i].label != 0) taken.push_back(files[i].label);
   }
   Label next = 1;
-  for (ContourFile& f : files) {
+  for (LabelContours& f : files) {
     input.warnings.insert(input.warnings.end(), f.warnings.begin(), f.warnings.end());
     if (f.label != 0) continue;
     while (std::find(taken.begin(), taken.end(), next) != taken.end()) ++next;
@@ -49,9 +49,9 @@ void read_contours(const InputOptions& options, Input& input) {
   }
   if (!options.labels.empty()) {
     std::vector<LabelInfo> known = {{0, ""}};
-    for (const ContourFile& f : files) known.push_back({f.label, f.name});
+    for (const LabelContours& f : files) known.push_back({f.label, f.name});
     const std::vector<std::size_t> keep = resolve_labels(known, options.labels);
-    std::vector<ContourFile> chosen;
+    std::vector<LabelContours> chosen;
     for (std::size_t k : keep) chosen.push_back(files[k - 1]);
     files = std::move(chosen);
   }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
 #include "stitch/stitch.h"

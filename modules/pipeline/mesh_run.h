@@ -13,7 +13,7 @@
 #include "pipeline/input.h"
 #include "pipeline/keep_pieces.h"
 #include "pipeline/mesh_product.h"
-#include "pipeline/volume_sections.h"
+#include "sections/volume_sections.h"
 #include "report/run_report.h"
 #include "stitch/stitch.h"
 #include "volume/fill_volume.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "meshio/read_mesh.h"
 #include "pipeline/input.h"
 #include "report/run_report.h"

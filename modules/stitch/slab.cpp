@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "stitch/planar.h"
+#include "planar/planar.h"
 #include "stitch/segment_distance.h"
 #include "stitch/sheet_layers.h"
 

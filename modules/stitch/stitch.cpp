@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "stitch/merge_tolerance.h"
 #include "stitch/slab.h"
-#include "stitch/snap_rounding.h"
+#include "planar/snap_rounding.h"
 
 namespace stackmesh {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "image/read_labels.h"
 
 namespace {

@@ -11,10 +11,10 @@
 #include <filesystem>
 #include <map>
 
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "enhance/enhance.h"
 #include "image/read_labels.h"
-#include "stitch/polygons.h"
+#include "sections/polygons.h"
 #include "stitch/stitch.h"
 
 namespace {
@@ -34,7 +34,7 @@ const Surface& organ(int side) {
   Surface& s = it->second;
   s.pixel_mm = s.gap_mm = 2 * M_PI * 40 / side;
   s.edge_mm = 2 * s.gap_mm;
-  ContourFile file;
+  LabelContours file;
   file.path = "organ";
   file.label = 1;
   for (int k = 0; k < side; ++k) {

@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "enhance/complex_mesh.h"
 #include "enhance/enhance.h"
 #include "enhance/sizing.h"

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "stitch/polygons.h"
-#include "stitch/snap_rounding.h"
+#include "sections/polygons.h"
+#include "planar/snap_rounding.h"
 #include "stitch/stitch.h"
 
 namespace {
@@ -17,7 +17,7 @@ using namespace stackmesh;
 /// Sections of an organ-like tube with an inner wall: both drift and breathe from section to section.
 Stack organ(int sections, int vertices) {
   const int half = vertices / sections / 2;
-  ContourFile file;
+  LabelContours file;
   file.path = "organ";
   file.label = 1;
   for (int k = 0; k < sections; ++k) {

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "checks.h"
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "enhance/enhance.h"
 #include "enhance/local_operations.h"
 #include "enhance/separate.h"
 #include "enhance_shapes.h"
-#include "stitch/polygons.h"
+#include "sections/polygons.h"
 #include "stitch/stitch.h"
 
 using namespace stackmesh;
@@ -110,7 +110,7 @@ TEST(EnhanceMending, AFoldIsTakenOut) {
 
 TEST(EnhanceMending, FacesLongerThanABlockAreSplit) {
   // A drum of fine walls: its flat ends are triangles from rim to rim, which fit into no block.
-  ContourFile file;
+  LabelContours file;
   file.path = "drum";
   file.label = 1;
   for (int k = 0; k < 24; ++k) {

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "checks.h"
 #include "fair/fair_labels.h"
-#include "pipeline/volume_sections.h"
+#include "sections/volume_sections.h"
 #include "random_stacks.h"
 #include "validate/check_fidelity.h"
 

@@ -6,7 +6,7 @@
 #include "image_files.h"
 
 using namespace image_files;
-using stackmesh::ContourFile;
+using stackmesh::LabelContours;
 using stackmesh::is_contour_input;
 using stackmesh::read_contour_file;
 
@@ -31,7 +31,7 @@ TEST_F(ContourInput, IsToldByItsEnding) {
 }
 
 TEST_F(ContourInput, SectionsAreSortedAndEmptyOnesKept) {
-  const ContourFile f =
+  const LabelContours f =
       read_contour_file(write("a.cnt", "S 3\nv 4 z 2.5\n" + square + "v 0 z 1.25\nv 7 z -1e0\n" + square +
                                            "{\n1 1\n2 1\n1 2.5\n}\n"));
   ASSERT_EQ(f.sections.size(), 3u);
@@ -46,7 +46,7 @@ TEST_F(ContourInput, SectionsAreSortedAndEmptyOnesKept) {
 }
 
 TEST_F(ContourInput, CaseLineEndsAndLayoutDoNotMatter) {
-  const ContourFile f =
+  const LabelContours f =
       read_contour_file(write("a.cnt", "\xEF\xBB\xBFs 1\r\nV 4 Z 3\r\n{ 0 0 4 0\r\n 4 4\t0 +4 }\r\n\r\n"));
   ASSERT_EQ(f.sections.size(), 1u);
   EXPECT_EQ(f.sections[0].polygons[0].points.size(), 4u);
@@ -67,7 +67,7 @@ TEST_F(ContourInput, PairsCarryNumberOrName) {
 }
 
 TEST_F(ContourInput, RepeatedPointsAreRemovedWithAWarning) {
-  const ContourFile f = read_contour_file(
+  const LabelContours f = read_contour_file(
       write("a.cnt", "S 2\nv 4 z 0\n" + square + "v 7 z 1\n{\n0 0\n0 0\n4 0\n4 4\n4 4\n0 4\n0 0\n}\n"));
   EXPECT_EQ(f.sections[1].polygons[0].points.size(), 4u);
   ASSERT_EQ(f.warnings.size(), 1u);
@@ -108,12 +108,12 @@ TEST_F(ContourInput, EveryTruncationIsAnError) {
 }
 
 TEST_F(ContourInput, CountsThatDisagreeWarn) {
-  const ContourFile more =
+  const LabelContours more =
       read_contour_file(write("a.cnt", "S 1\nv 3 z 0\n" + square + "v 4 z 1\n" + square));
   EXPECT_EQ(more.sections.size(), 2u);
   EXPECT_TRUE(has_warning(more.warnings, "2 sections where its header says 1"));
   EXPECT_TRUE(has_warning(more.warnings, "4 vertices where 3"));
-  const ContourFile fewer =
+  const LabelContours fewer =
       read_contour_file(write("b.cnt", "S 2\nv 9 z 0\n" + square + "v 4 z 1\n" + square));
   EXPECT_TRUE(has_warning(fewer.warnings, "4 vertices where 9"));
   refuse("S 3\nv 4 z 0\n" + square, {"truncated", "1 sections", "3"});

@@ -72,7 +72,7 @@ TEST(RealData, EveryContourFileIsRead) {
   for (const auto& entry : fs::recursive_directory_iterator(data)) {
     if (entry.path().extension() != ".cnt") continue;
     SCOPED_TRACE(entry.path().string());
-    stackmesh::ContourFile f;
+    stackmesh::LabelContours f;
     ASSERT_NO_THROW(f = stackmesh::read_contour_file(entry.path().string()));
     EXPECT_GE(f.sections.size(), 2u);
     ++read;

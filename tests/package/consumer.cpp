@@ -1,5 +1,5 @@
 // Uses the installed headers and libraries: a box of voxels to a closed surface.
-#include <contour/extract.h>
+#include <sections/extract.h>
 #include <stitch/stitch.h>
 #include <validate/check_surface.h>
 

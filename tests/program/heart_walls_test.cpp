@@ -31,7 +31,7 @@ class HeartWalls : public ProgramTest {
  protected:
   /// Smallest distance between the two outlines in any section up to a height, mm.
   static double thinnest_drawn(const std::string& epi, const std::string& endo, double up_to) {
-    const stackmesh::ContourFile outer = stackmesh::read_contour_file(epi), inner = stackmesh::read_contour_file(endo);
+    const stackmesh::LabelContours outer = stackmesh::read_contour_file(epi), inner = stackmesh::read_contour_file(endo);
     double least = std::numeric_limits<double>::infinity();
     const auto measure = [&](const stackmesh::ContourPolygon& from, const stackmesh::ContourPolygon& to) {
       for (const auto& v : from.points)

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "checks.h"
-#include "pipeline/virtual_sections.h"
-#include "stitch/polygons.h"
+#include "sections/virtual_sections.h"
+#include "sections/polygons.h"
 #include "validate/boundaries.h"
 
 namespace stackmesh {
@@ -23,8 +23,8 @@ ContourPolygon disc(double cx, double cy, double r, int n = 64) {
 
 double disc_area(double r, int n = 64) { return 0.5 * n * std::sin(2 * M_PI / n) * r * r; }
 
-ContourFile file_of(Label label, const std::vector<double>& heights, const std::function<std::vector<ContourPolygon>(double)>& at) {
-  ContourFile f;
+LabelContours file_of(Label label, const std::vector<double>& heights, const std::function<std::vector<ContourPolygon>(double)>& at) {
+  LabelContours f;
   f.path = "drawn";
   f.label = label;
   for (double z : heights) f.sections.push_back({z, at(z)});
@@ -62,7 +62,7 @@ ContourStackOptions slices() {
   return o;
 }
 
-Made make(const std::vector<ContourFile>& files, ContourStackOptions options = {}, std::optional<int> per_gap = std::nullopt, Caps caps = Caps::automatic) {
+Made make(const std::vector<LabelContours>& files, ContourStackOptions options = {}, std::optional<int> per_gap = std::nullopt, Caps caps = Caps::automatic) {
   Made m;
   options.caps = caps;
   m.stack = sections_from_contours(files, m.warnings, options);
@@ -107,7 +107,7 @@ TEST(DrawnCopies, CountOnceHoweverTheyAreWritten) {
   const std::vector<std::vector<ContourPolygon>> drawn = {{a, a}, {a, rotated(a)}, {a, reversed(a)}, {twice_round(a)}, {a, disc(0.1, 0, 20)}, {a, disc(0.02, 0.03, 20.03, 61)}};
   for (std::size_t which = 0; which < drawn.size(); ++which)
     for (int where : {3, 7, -1}) {  // one section, the last one, all
-      ContourFile f = file_of(1, every(3, 8), [&](double) { return std::vector{a}; });
+      LabelContours f = file_of(1, every(3, 8), [&](double) { return std::vector{a}; });
       for (int k = 0; k < 8; ++k)
         if (k == where || where < 0) f.sections[k].polygons = drawn[which];
       const Made m = make({f}, slices());
@@ -134,8 +134,8 @@ TEST(DrawnCopies, WallsBridgesAndNeighboursStay) {
 }
 
 TEST(DrawnCopies, SectionsOfALabelAtOneHeightJoin) {
-  ContourFile f = file_of(1, every(2, 4), [](double) { return std::vector{disc(0, 0, 5)}; });
-  ContourFile g = f;
+  LabelContours f = file_of(1, every(2, 4), [](double) { return std::vector{disc(0, 0, 5)}; });
+  LabelContours g = f;
   for (ContourSection& s : g.sections) {
     s.z_mm += 5e-4;
     s.polygons = {disc(20, 0, 5)};
@@ -197,7 +197,7 @@ TEST(DrawnEnds, EitherEndHasItsOwnCap) {
 }
 
 /// Discs within discs, of changing radius, pushed about by up to the walls' thickness from section to section.
-std::vector<ContourFile> nested_discs(unsigned seed, double& thinnest) {
+std::vector<LabelContours> nested_discs(unsigned seed, double& thinnest) {
   std::mt19937 random(seed);
   const auto real = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   const int levels = 2 + static_cast<int>(random() % 3), sections = 3 + static_cast<int>(random() % 5);
@@ -205,7 +205,7 @@ std::vector<ContourFile> nested_discs(unsigned seed, double& thinnest) {
   std::vector<double> wall;
   for (int d = 0; d + 1 < levels; ++d) wall.push_back(real(1.5, 6));
   thinnest = *std::min_element(wall.begin(), wall.end());
-  std::vector<ContourFile> files(levels);
+  std::vector<LabelContours> files(levels);
   double x = 0, y = 0;
   for (int k = 0; k < sections; ++k) {
     double radius = real(14, 18);
@@ -244,7 +244,7 @@ TEST(NestedStacks, WhatLiesInsideStaysInside) {
   if (asked == nullptr) seeds.push_back(1889);  // a ring that outgrows its wall
   for (const unsigned seed : seeds) {
     double thinnest = 0;
-    std::vector<ContourFile> files = nested_discs(seed, thinnest);
+    std::vector<LabelContours> files = nested_discs(seed, thinnest);
     const int levels = static_cast<int>(files.size());
     const bool one_file = seed % 5 == 4;  // the same walls and holes, drawn as one label
     if (one_file) {

@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "checks.h"
 #include "random_stacks.h"
-#include "stitch/polygons.h"
+#include "sections/polygons.h"
 #include "validate/check_fidelity.h"
 
 namespace stackmesh {

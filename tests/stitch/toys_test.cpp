@@ -4,8 +4,8 @@
 
 #include "checks.h"
 #include "random_stacks.h"
-#include "stitch/polygons.h"
-#include "stitch/snap_rounding.h"
+#include "sections/polygons.h"
+#include "planar/snap_rounding.h"
 
 namespace stackmesh {
 namespace {
@@ -26,15 +26,15 @@ ContourPolygon disc(double cx, double cy, double r, int n = 48) {
   return p;
 }
 
-ContourFile label_of(Label label, const std::vector<std::vector<ContourPolygon>>& sections, double gap) {
-  ContourFile f;
+LabelContours label_of(Label label, const std::vector<std::vector<ContourPolygon>>& sections, double gap) {
+  LabelContours f;
   f.path = "toy";
   f.label = label;
   for (std::size_t k = 0; k < sections.size(); ++k) f.sections.push_back({gap * static_cast<double>(k), sections[k]});
   return f;
 }
 
-StitchResult stitch_contours(const std::vector<ContourFile>& files, const StitchOptions& options = {}) {
+StitchResult stitch_contours(const std::vector<LabelContours>& files, const StitchOptions& options = {}) {
   std::vector<std::string> warnings;
   Progress quiet;
   Stack stack = sections_from_contours(files, warnings);

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "contour/extract.h"
+#include "sections/extract.h"
 #include "model/complex.h"
 #include "stitch/stitch.h"
 #include "validate/check_surface.h"

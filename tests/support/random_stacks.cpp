@@ -129,14 +129,14 @@ LabelVolume random_volume(std::uint64_t seed) {
   return v;
 }
 
-std::vector<ContourFile> random_contours(std::uint64_t seed) {
+std::vector<LabelContours> random_contours(std::uint64_t seed) {
   Random r(seed * 0xD1B54A32D192ED03ull + 7);
   const int labels = 1 + below(r, 3), sections = 2 + below(r, 5), points = 3 + below(r, 24);
   const double jitter = below(r, 8) == 0 ? 0 : std::pow(10.0, -1 - 13 * unit(r));
   const double gap = std::pow(10.0, -1 + 2 * unit(r));
-  std::vector<ContourFile> files;
+  std::vector<LabelContours> files;
   for (int l = 0; l < labels; ++l) {
-    ContourFile file;
+    LabelContours file;
     file.path = "random " + std::to_string(seed) + " label " + std::to_string(l + 1);
     file.label = l + 1;
     std::vector<double> radius;

@@ -15,7 +15,7 @@ LabelVolume random_volume(std::uint64_t seed);
 
 /// Contours of one to three labels whose sections are near copies of each other: jitter from 1e-1 down to 1e-14
 /// of an edge, also exact copies.
-std::vector<ContourFile> random_contours(std::uint64_t seed);
+std::vector<LabelContours> random_contours(std::uint64_t seed);
 
 /// A volume of 2 to 7 voxels along each axis from any bytes, for the fuzzer: three bytes of sizes, one of labels (1 to 7), three of spacings (0.5 to 4 mm, in
 /// steps, mostly 1), then two voxels a byte; what is not there is background. One voxel at least is labelled.

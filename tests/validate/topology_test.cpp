@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "stitch/polygons.h"
+#include "sections/polygons.h"
 #include "stitch/stitch.h"
 #include "validate/check_topology.h"
 
@@ -67,7 +67,7 @@ ContourPolygon disc(double cx, double r) {
 
 TEST(Topology, HolesOfAStitchedWallAreCountedAndFound) {
   // A thin wall pushed by more than its thickness: stitched as it is, it tears on either side, between every two sections.
-  ContourFile outer, inner;
+  LabelContours outer, inner;
   outer.label = 1;
   inner.label = 2;
   for (int k = 0; k < 3; ++k) {

@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "model/contours.h"
+#include "model/stack.h"
+#include "stitch/stitch.h"
+
+namespace stackmesh {
+
+struct ContourStackOptions {
+  bool slices = false;             ///< a contour stands for a slice, which reaches half a gap to either side; false: a plane cut
+  double same_height_mm = 1e-3;    ///< contours of heights that are at most so far apart are one section; those of different
+                                   ///< labels up to 3 % of the smallest usual gap, too
+  Caps caps = Caps::automatic;     ///< how labels end, as it will be stitched: where other labels go on, ends are made contours
+  std::map<Label, LabelEndCaps> label_caps;
+  bool first_wins = false;         ///< where labels overlap: the one given first; false: the smaller one
+  bool report_overlaps = false;    ///< a warning says how much labels overlap, and who got it
+  bool fill_missing = false;       ///< heights that a label lacks between its own get contours made from their neighbours
+  bool repair = false;             ///< contours of one label that cross are united where even-odd says nearly the same
+  bool merge = false;              ///< all contours become one label, numbered as the smallest
+  Frame frame;                     ///< plane coordinates and height of the contours to the world
+};
+
+/// Makes sections out of contour polygons: a constrained triangulation of each section's polygons, regions
+/// grown in it, and nesting by region [Wang et al. 2005, 3.1]; an edge walked twice (the bridge of a keyhole contour)
+/// counts as none; contours drawn twice, or nearly so, count once, with a warning (sections/contour_copies.h). A label ends half
+/// its own gap beyond its last contour (plane cuts: on it, or as a dome), whatever the heights of the others
+/// (sections/drawn_ends.h). Orientation of the input is free. The grid is a power of two mm, about 1e-5 of the box.
+/// @throws Error(input) naming file, section and contour where contours of one label cross themselves or each
+/// other, where labels share a number, or where fewer than two sections hold contours.
+Stack sections_from_contours(const std::vector<LabelContours>& files, std::vector<std::string>& warnings,
+                             const ContourStackOptions& options = {});
+
+}  // namespace stackmesh

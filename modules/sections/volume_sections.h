@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "sections/extract.h"
+#include "model/complex.h"
+#include "model/label_volume.h"
+
+namespace stackmesh {
+
+struct SectionOptions {
+  ContourOptions contours;              ///< axis and threads; the rest is chosen by volume_sections
+  std::optional<double> simplify_px;    ///< unset: 0.05 of faired contours, 0.5 of those along the pixels
+  std::optional<int> virtual_sections;  ///< per gap; unset: as many as make it about a pixel
+  bool faired_surface = false;          ///< also give the faired interfaces as a whole
+  bool as_stored = false;               ///< labels that are stored finer than they were made stay as they are stored
+  bool band_asked = false;              ///< the user chose band_px
+  double band_px = 0.5;                 ///< fairing (FairOptions); 0: contours along the pixels
+};
+
+struct VolumeSections {
+  ContourResult contours;
+  std::vector<std::string> warnings;
+  InterfaceComplex faired;  ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
+};
+
+/// A label volume to its sections: virtual slices between far ones, interfaces faired, contours traced and simplified.
+VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Progress& progress);
+
+}  // namespace stackmesh
