@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "pipeline/mesh_run.h"
 
 namespace stackmesh::app {
@@ -19,7 +19,7 @@ void add_fem_command(CLI::App& program);
 /// The options of `mesh`, on another command that takes them all; to be asked once the command line is parsed.
 struct MeshOptionSource {
   std::function<MeshRunOptions()> options;  ///< @throws Error(usage)
-  std::function<std::unique_ptr<Progress>()> progress;
+  std::function<std::unique_ptr<Monitor>()> progress;
   std::function<bool()> quiet;
 };
 MeshOptionSource add_mesh_options(CLI::App& command, int default_order);

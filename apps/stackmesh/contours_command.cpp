@@ -38,7 +38,7 @@ void run(const ContoursArguments& a) {
   Input input = read_input(a.input.options());
   check_stack_axis(input, options.contours.axis);
   if (input.volume && !options.as_stored && options.band_px > 0) reduce_to_true_grid(input, options.contours.threads);
-  Stack stack = input.sections ? std::move(*input.sections) : volume_sections(*input.volume, options, *progress).contours.stack;
+  Stack stack = !input.volume ? drawn_sections(input) : volume_sections(*input.volume, options, *progress).contours.stack;
   stack.sections.erase(std::remove_if(stack.sections.begin(), stack.sections.end(), [](const Section& s) { return s.interpolated; }), stack.sections.end());
   AtomicFiles files;
   write_sections(files, a.output, stack);

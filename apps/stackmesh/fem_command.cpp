@@ -75,8 +75,8 @@ FemRunOptions to_options(const CLI::App& command, const FemArguments& a, MeshRun
   o.selections = a.selections;
   o.sharp_deg = a.sharp_deg;
   o.label_array = a.label_array;
-  if (o.mesh.sections.contours.axis == StackAxis::x) o.up = {1, 0, 0};
-  if (o.mesh.sections.contours.axis == StackAxis::y) o.up = {0, 1, 0};
+  if (o.mesh.mesh.sections.contours.axis == StackAxis::x) o.up = {1, 0, 0};
+  if (o.mesh.mesh.sections.contours.axis == StackAxis::y) o.up = {0, 1, 0};
   if (!a.image.empty() && a.materials.empty())
     fail_usage("--image needs a law that turns intensities into moduli", "command line", "give it with --materials LAW.json");
   o.mesh.option_texts.push_back({"image", a.image.empty() ? "none" : a.image});

@@ -13,7 +13,8 @@ using Json = nlohmann::ordered_json;
 
 Json colour_of(const LabelInfo& label) { return label.colour ? Json(*label.colour) : Json(nullptr); }
 
-Json describe(const Input& input, const std::array<double, 3>& made_mm) {
+/// @param s of contours
+Json describe(const Input& input, const Stack& s, const std::array<double, 3>& made_mm) {
   Json j = {{"path", input.path}, {"kind", input.kind}};
   Json labels = Json::array();
   if (input.volume) {
@@ -32,7 +33,6 @@ Json describe(const Input& input, const std::array<double, 3>& made_mm) {
       labels.push_back({{"label", v.labels[k].number}, {"name", v.labels[k].name}, {"colour", colour_of(v.labels[k])}, {"voxels", counts[k]},
                         {"volume_mm3", static_cast<double>(counts[k]) * v.voxel_volume_mm3()}});
   } else {
-    const Stack& s = *input.sections;
     j["space"] = input.anatomical ? "lps" : "none";
     j["sections"] = s.sections.size();
     j["z_mm"] = {s.sections.front().z_mm, s.sections.back().z_mm};
@@ -52,7 +52,8 @@ Json describe(const Input& input, const std::array<double, 3>& made_mm) {
   return j;
 }
 
-void print(const Input& input, const std::array<double, 3>& made_mm) {
+/// @param s of contours
+void print(const Input& input, const Stack& s, const std::array<double, 3>& made_mm) {
   std::printf("%s (%s)\n", printable(input.path).c_str(), input.kind.c_str());
   if (input.volume) {
     const LabelVolume& v = *input.volume;
@@ -69,7 +70,6 @@ void print(const Input& input, const std::array<double, 3>& made_mm) {
       std::printf("%8d %12zu %14.1f  %s\n", v.labels[k].number, counts[k], static_cast<double>(counts[k]) * v.voxel_volume_mm3(),
                   printable(v.labels[k].name).c_str());
   } else {
-    const Stack& s = *input.sections;
     std::printf("sections   %zu, from z = %g to %g mm\n", s.sections.size(), s.sections.front().z_mm, s.sections.back().z_mm);
     for (std::size_t k = 1; k < s.labels.size(); ++k) std::printf("%8d  %s\n", s.labels[k].number, printable(s.labels[k].name).c_str());
   }
@@ -85,16 +85,17 @@ void add_info_command(CLI::App& program) {
   command->add_flag("--json", *json, "as JSON");
   command->callback([input, json] {
     Input read = read_input(input->options());
+    const Stack sections = read.volume ? Stack() : drawn_sections(read);
     std::array<double, 3> made_mm = {0, 0, 0};
     if (read.volume) {
       made_mm = read.volume->spacing_mm;
       if (const auto grid = find_true_grid(*read.volume, 0)) made_mm = grid->volume.spacing_mm;
     }
     if (*json) {
-      std::printf("%s\n", describe(read, made_mm).dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+      std::printf("%s\n", describe(read, sections, made_mm).dump(1, ' ', false, Json::error_handler_t::replace).c_str());
       return;
     }
-    print(read, made_mm);
+    print(read, sections, made_mm);
     print_warnings(read.warnings);
   });
 }

@@ -100,29 +100,29 @@ int smoothing_passes(const CLI::App& command, int asked, double band_px) {
 
 MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Target target) {
   MeshRunOptions o;
-  o.target = target;
+  o.mesh.target = target;
   o.command = target == Target::volume ? "mesh" : "surface";
   o.version = STACKMESH_VERSION;
   o.input = a.input.options();
   o.input.voids = a.voids;
-  o.sections = a.contours.options();
-  o.threads = a.contours.threads;
-  o.stitch.snap_mm = a.snap_mm;
-  parse_caps(a.caps, o.stitch.caps, o.label_caps_text);
+  o.mesh.sections = a.contours.options();
+  o.mesh.threads = a.contours.threads;
+  o.mesh.stitch.snap_mm = a.snap_mm;
+  parse_caps(a.caps, o.mesh.stitch.caps, o.label_caps_text);
   if (command.get_option("--keep-largest")->count() > 0) {
     const std::string& n = a.keep_largest;
     if (n.size() > 6 || n.find_first_not_of("0123456789") != std::string::npos || n == "0")
       fail_usage("'" + n + "' is no number of pieces", "--keep-largest", "write --keep-largest for one piece of each label, or --keep-largest N, after the input");
-    o.pieces.keep_largest = n.empty() ? 1 : std::stoi(n);
+    o.mesh.pieces.keep_largest = n.empty() ? 1 : std::stoi(n);
   }
-  if (a.min_piece_mm3 > 0) o.pieces.min_piece_mm3 = a.min_piece_mm3;
-  o.order = a.order;
-  o.refine = a.refine;
-  o.many_tets = a.yes;
-  if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.fill.max_volume_mm3);
-  if (a.radius_edge > 0) o.fill.radius_edge = a.radius_edge;
-  if (a.dihedral > 0) o.fill.dihedral_deg = a.dihedral;
-  o.fill.timeout_s = a.timeout_s;
+  if (a.min_piece_mm3 > 0) o.mesh.pieces.min_piece_mm3 = a.min_piece_mm3;
+  o.mesh.order = a.order;
+  o.mesh.refine = a.refine;
+  o.mesh.many_tets = a.yes;
+  if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.mesh.fill.max_volume_mm3);
+  if (a.radius_edge > 0) o.mesh.fill.radius_edge = a.radius_edge;
+  if (a.dihedral > 0) o.mesh.fill.dihedral_deg = a.dihedral;
+  o.mesh.fill.timeout_s = a.timeout_s;
   o.space = a.space;
   o.outputs = a.outputs;
   o.reports = a.reports;
@@ -137,41 +137,41 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.strict = a.strict;
 
   const EnhanceArguments& e = a.enhance;
-  o.sections.virtual_sections = parse_interpolate(e.interpolate);
-  o.enhance = !e.off && !e.raw;
-  o.sections.band_asked = command.get_option("--band")->count() > 0;
+  o.mesh.sections.virtual_sections = parse_interpolate(e.interpolate);
+  o.mesh.enhance = !e.off && !e.raw;
+  o.mesh.sections.band_asked = command.get_option("--band")->count() > 0;
   if (e.raw) {  // the voxels' own outlines
-    if (o.sections.band_asked) fail_usage("--band has no meaning beside --raw", "--raw", "leave one of them out: the raw surface follows the outlines of the pixels");
-    o.sections.band_px = 0;
+    if (o.mesh.sections.band_asked) fail_usage("--band has no meaning beside --raw", "--raw", "leave one of them out: the raw surface follows the outlines of the pixels");
+    o.mesh.sections.band_px = 0;
   }
-  if (e.edge_length.empty() && e.deviation <= 0) o.enhance_up_to = 10000000;
-  if (!e.edge_length.empty()) o.label_edges_text = parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.enhancement.edge_length_mm);
-  if (e.deviation > 0) o.enhancement.deviation_mm = e.deviation;
-  if (e.edge_min > 0) o.enhancement.edge_min_mm = e.edge_min;
-  if (e.edge_max > 0) o.enhancement.edge_max_mm = e.edge_max;
-  o.enhancement.gradation = e.gradation;
-  o.enhancement.smooth_passes = smoothing_passes(command, e.smooth, o.sections.band_px);
+  if (e.edge_length.empty() && e.deviation <= 0) o.mesh.enhance_up_to = 10000000;
+  if (!e.edge_length.empty()) o.label_edges_text = parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.mesh.enhancement.edge_length_mm);
+  if (e.deviation > 0) o.mesh.enhancement.deviation_mm = e.deviation;
+  if (e.edge_min > 0) o.mesh.enhancement.edge_min_mm = e.edge_min;
+  if (e.edge_max > 0) o.mesh.enhancement.edge_max_mm = e.edge_max;
+  o.mesh.enhancement.gradation = e.gradation;
+  o.mesh.enhancement.smooth_passes = smoothing_passes(command, e.smooth, o.mesh.sections.band_px);
   // The budget is for sizes that nobody asked for, or for whoever asks for it.
   const bool budget_asked = command.get_option("--target-tets")->count() > 0;
   const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
-  if (budget_asked) o.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
-  o.enhancement.usual_target = !budget_asked && !sizes_asked;
-  if (budget_asked && (!e.edge_length.empty() || !o.enhance))
-    fail_usage(std::string("--target-tets and ") + (!o.enhance ? "--no-enhance" : "--edge-length") + " both say how many elements there are", "command line", "give one of them");
+  if (budget_asked) o.mesh.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
+  o.mesh.enhancement.usual_target = !budget_asked && !sizes_asked;
+  if (budget_asked && (!e.edge_length.empty() || !o.mesh.enhance))
+    fail_usage(std::string("--target-tets and ") + (!o.mesh.enhance ? "--no-enhance" : "--edge-length") + " both say how many elements there are", "command line", "give one of them");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"void", a.voids.empty() ? "none" : a.voids},
                     {"merge", a.input.merge ? "on" : "off"},
                     {"axis", a.contours.axis},
                     {"simplify_px", a.contours.simplify_px >= 0 ? text_of(a.contours.simplify_px) : "default"},
-                    {"band_px", text_of(o.sections.band_px)},
-                    {"as_stored", o.sections.as_stored ? "on" : "off"},
+                    {"band_px", text_of(o.mesh.sections.band_px)},
+                    {"as_stored", o.mesh.sections.as_stored ? "on" : "off"},
                     {"snap_mm", text_of(a.snap_mm)},
                     {"caps", a.caps},
-                    {"keep_largest", o.pieces.keep_largest ? std::to_string(*o.pieces.keep_largest) : "all"},
-                    {"min_piece_mm3", o.pieces.min_piece_mm3 ? text_of(*o.pieces.min_piece_mm3) : "unset"},
+                    {"keep_largest", o.mesh.pieces.keep_largest ? std::to_string(*o.mesh.pieces.keep_largest) : "all"},
+                    {"min_piece_mm3", o.mesh.pieces.min_piece_mm3 ? text_of(*o.mesh.pieces.min_piece_mm3) : "unset"},
                     {"interpolate", e.interpolate},
-                    {"enhance", o.enhance ? "on" : "off"},
-                    {"smooth", std::to_string(o.enhancement.smooth_passes)},
+                    {"enhance", o.mesh.enhance ? "on" : "off"},
+                    {"smooth", std::to_string(o.mesh.enhancement.smooth_passes)},
                     {"edge_length_mm", e.edge_length.empty() ? "unset" : e.edge_length},
                     {"deviation_mm", e.deviation > 0 ? text_of(e.deviation) : "default"},
                     {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},

@@ -104,9 +104,9 @@ void TerminalArguments::add_to(CLI::App& command) {
   command.add_flag("--verbose", verbose, "a line per stage, as --progress plain");
 }
 
-std::unique_ptr<Progress> TerminalArguments::make_progress() const {
+std::unique_ptr<Monitor> TerminalArguments::make_progress() const {
   if (for_slicer()) return make_slicer_progress();
-  return make_terminal_progress(quiet || progress == "none" ? ProgressMode::none
+  return make_terminal_monitor(quiet || progress == "none" ? ProgressMode::none
                                 : verbose || progress == "plain" ? ProgressMode::plain
                                                                  : ProgressMode::automatic);
 }

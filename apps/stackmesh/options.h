@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "pipeline/input.h"
 #include "sections/volume_sections.h"
 #include "stitch/stitch.h"
@@ -39,7 +39,7 @@ struct TerminalArguments {
   bool quiet = false, verbose = false;
   bool for_slicer() const { return progress == "slicer"; }
   void add_to(CLI::App& command);
-  std::unique_ptr<Progress> make_progress() const;
+  std::unique_ptr<Monitor> make_progress() const;
 };
 
 /// Accepts finite numbers of [low, high]; `what` names them in an error: "a number above 0".

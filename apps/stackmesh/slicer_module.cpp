@@ -86,7 +86,7 @@ struct StageEnd {
 };
 constexpr StageEnd kStages[] = {{"read", 0.05}, {"contours", 0.15}, {"stitch", 0.25}, {"validate", 0.3}, {"enhance", 0.7}, {"volume", 0.95}, {"write", 1}};
 
-class SlicerProgress : public Progress {
+class SlicerProgress : public Monitor {
  public:
   void begin(const std::string& stage) override {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -201,7 +201,7 @@ std::vector<std::string> translate_slicer_call(int argc, char** argv) {
   return arguments;
 }
 
-std::unique_ptr<Progress> make_slicer_progress() { return std::make_unique<SlicerProgress>(); }
+std::unique_ptr<Monitor> make_slicer_progress() { return std::make_unique<SlicerProgress>(); }
 
 void write_return_parameters(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
   AtomicFiles files;

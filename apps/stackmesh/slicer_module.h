@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 
 namespace stackmesh::app {
 
@@ -17,8 +17,8 @@ bool is_slicer_call(int argc, char** argv);
 /// The same call as a command line of `mesh`: "mesh INPUT -o OUTPUT --progress slicer --edge-length 2 ...". @throws Error(usage)
 std::vector<std::string> translate_slicer_call(int argc, char** argv);
 
-/// Progress as Slicer reads it from stdout: <filter-start>, <filter-progress> of the whole run, <filter-end> for each stage.
-std::unique_ptr<Progress> make_slicer_progress();
+/// Monitor as Slicer reads it from stdout: <filter-start>, <filter-progress> of the whole run, <filter-end> for each stage.
+std::unique_ptr<Monitor> make_slicer_progress();
 
 /// Writes "name = value" lines, as Slicer reads them back. @throws Error(output)
 void write_return_parameters(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values);

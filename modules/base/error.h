@@ -11,7 +11,8 @@ enum class ErrorKind {
   no_result = 4,  ///< no valid result exists or was found
   output = 5,     ///< the output cannot be written
   outside_limits = 6,  ///< `validate`: a valid mesh, but outside a limit
-  internal = 70   ///< a bug of ours
+  internal = 70,  ///< a bug of ours
+  cancelled = 130  ///< the monitor of the run asked for its end
 };
 
 /// The one exception of the library. It carries what is wrong, where (file, section, label, entities) and
@@ -20,9 +21,13 @@ class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& what_is_wrong, const std::string& where, const std::string& how_to_mend);
   ErrorKind kind() const noexcept { return kind_; }
+  const std::string& problem() const noexcept { return problem_; }  ///< what is wrong
+  const std::string& where() const noexcept { return where_; }
+  const std::string& mend() const noexcept { return mend_; }        ///< what to do about it
 
  private:
   ErrorKind kind_;
+  std::string problem_, where_, mend_;
 };
 
 /// Shorthands: throw the error of that kind.

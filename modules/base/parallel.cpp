@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "base/cancel.h"
+
 namespace stackmesh {
 
 int thread_count(int threads) {
@@ -15,12 +17,20 @@ int thread_count(int threads) {
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
   const int n = std::min(thread_count(threads), thread_count(0));  // for more, TBB would print a warning
   if (n == 1 || count < 2) {
-    for (std::size_t i = 0; i < count; ++i) body(i);
+    for (std::size_t i = 0; i < count; ++i) {
+      stop_if_cancelled();
+      body(i);
+    }
     return;
   }
+  const Monitor* monitor = cancelling_monitor();
   const auto loop = [&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+      const CancelScope scope(monitor);
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        stop_if_cancelled();
+        body(i);
+      }
     });
   };
   if (n == tbb::info::default_concurrency())

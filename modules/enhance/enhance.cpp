@@ -46,12 +46,11 @@ std::string number(double x) {
 
 class Enhancement {
  public:
-  Enhancement(const InterfaceComplex& stitched, const EnhanceOptions& options, Progress& progress)
+  Enhancement(const InterfaceComplex& stitched, const EnhanceOptions& options, Monitor& progress)
       : stitched_(stitched), o_(options), progress_(progress) {}
 
   EnhanceResult run() {
     check();
-    result_.level = "stitched";
     if (stitched_.triangles.empty()) {
       result_.complex = stitched_;
       return std::move(result_);
@@ -80,7 +79,7 @@ class Enhancement {
     std::vector<Vec3> smoothed = mesh.points;  // smoothing only moves points
     if (o_.remesh) {
       remesh_mesh(mesh);
-      if (stands("enhanced", mesh)) {
+      if (stands(SurfaceLevel::enhanced, mesh)) {
         result_.complex = mesh.to_complex();
         compare_volumes(mesh);
         progress_.advance(1);
@@ -95,7 +94,7 @@ class Enhancement {
     if (o_.smooth_passes > 0 || o_.faired != nullptr) {
       InterfaceComplex moved = stitched_;
       moved.points = smoothed;
-      if (stands("smoothed", ComplexMesh(moved, 0, o_.threads))) result_.complex = std::move(moved);
+      if (stands(SurfaceLevel::smoothed, ComplexMesh(moved, 0, o_.threads))) result_.complex = std::move(moved);
     }
     progress_.advance(1);
     return std::move(result_);
@@ -127,7 +126,7 @@ class Enhancement {
   void warn(const std::string& text) { result_.warnings.push_back(text); }
 
   /// True when the whole surface is as sound as the stitched one, which an exact test of all its triangles says.
-  bool stands(const char* level, const ComplexMesh& mesh) {
+  bool stands(SurfaceLevel level, const ComplexMesh& mesh) {
     std::map<Label, ShellCount> shells;
     shell_sizes(mesh, &shells);
     const std::size_t contacts = count_contacts(mesh, o_.threads);
@@ -140,7 +139,7 @@ class Enhancement {
       for (const auto& [label, was] : shells_)
         if (const ShellCount is = shells[label]; !(is == was))
           why = "label " + std::to_string(label) + " went from " + text(was) + " to " + text(is);
-    warn("the " + std::string(level) + " surface was given up: " + why);
+    warn("the " + std::string(to_text(level)) + " surface was given up: " + why);
     return false;
   }
 
@@ -488,7 +487,7 @@ class Enhancement {
 
   const InterfaceComplex& stitched_;
   const EnhanceOptions& o_;
-  Progress& progress_;
+  Monitor& progress_;
   EnhanceResult result_;
   std::map<Label, double> volumes_;  // to be kept
   std::vector<double> shell_;        // of each vertex of the stitched complex: size of its smallest closed shell
@@ -505,7 +504,7 @@ class Enhancement {
 }  // namespace
 
 EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options,
-                              Progress& progress) {
+                              Monitor& progress) {
   return Enhancement(stitched, options, progress).run();
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "model/complex.h"
 
 namespace stackmesh {
@@ -51,7 +51,7 @@ struct EnhanceCounts {
 
 struct EnhanceResult {
   InterfaceComplex complex;  ///< stack coordinates, mm
-  std::string level;         ///< "enhanced", "smoothed" or "stitched": how far it came
+  SurfaceLevel level = SurfaceLevel::stitched;  ///< how far it came
   EnhanceCounts counts;
   std::size_t expected_triangles = 0, expected_tets = 0;  ///< from the sizes, before remeshing
   double coarsened = 1;  ///< by what edges were made longer (or shorter) for the target
@@ -65,6 +65,6 @@ struct EnhanceResult {
 /// @throws Error(usage) for an edge length, deviation or gradation that makes no sense, or that asks for more
 /// than 50 million triangles (with the estimate).
 EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options,
-                              Progress& progress);
+                              Monitor& progress);
 
 }  // namespace stackmesh

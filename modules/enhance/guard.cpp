@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/cancel.h"
 #include "base/parallel.h"
 
 namespace stackmesh {
@@ -186,6 +187,7 @@ bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s
 }
 
 bool Guard::allows(const Change& c) {
+  stop_if_cancelled();
   if (stamp_.size() < mesh_.triangles.size()) stamp_.resize(mesh_.triangles.size() * 5 / 4 + 16, 0);
   ++now_;
   for (std::int32_t r : *c.removed) stamp_[r] = now_;

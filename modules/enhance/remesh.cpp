@@ -421,7 +421,7 @@ void add(RemeshCounts& sum, const RemeshCounts& c) {
 }  // namespace
 
 RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
-                    const RemeshOptions& options, Progress& progress) {
+                    const RemeshOptions& options, Monitor& progress) {
   RemeshCounts counts;
   // The mesh still is the reference, whose faces are numbered as the triangles that are alive.
   std::vector<std::int32_t> hints(mesh.points.size(), -1);

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "enhance/complex_mesh.h"
 #include "enhance/reference.h"
 
@@ -37,6 +37,6 @@ struct RemeshCounts {
 /// worst triangles are worked on. Every operation is tested exactly against the whole complex before it is
 /// committed. `size` follows the vertices.
 RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Reference& reference,
-                    const RemeshOptions& options, Progress& progress);
+                    const RemeshOptions& options, Monitor& progress);
 
 }  // namespace stackmesh

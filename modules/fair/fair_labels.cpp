@@ -82,7 +82,7 @@ InterfaceComplex surface_of(const Net& net, const LabelVolume& volume, int threa
 
 }  // namespace
 
-FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const FairOptions& options, Progress&) {
+FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const FairOptions& options, Monitor&) {
   NetOptions n;
   n.band_px = options.band_px;
   n.virtual_band_px = std::max(options.band_px, kVirtualBand_px);

@@ -1,5 +1,5 @@
 #pragma once
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "model/faired_labels.h"
 #include "model/label_volume.h"
 
@@ -17,6 +17,6 @@ struct FairOptions {
 /// vertex of a contour then lies strictly between its four pixel centres, so every centre keeps its label and no two
 /// contours can cross. Deterministic for any number of threads.
 /// @param stacking_axis 0 x, 1 y, 2 z
-FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const FairOptions& options, Progress& progress);
+FairedLabels fair_labels(const LabelVolume& volume, int stacking_axis, const FairOptions& options, Monitor& progress);
 
 }  // namespace stackmesh

@@ -1,6 +1,7 @@
 #include "fair/true_grid.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cmath>
 #include <numeric>
 
@@ -183,6 +184,15 @@ std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads) {
     for (int j : planes[1].plane)
       for (int i : planes[0].plane) out.voxels[at++] = volume.voxels[volume.index(i, j, k)];
   return grid;
+}
+
+std::string true_grid_warning(const std::array<double, 3>& stored_mm, const std::array<double, 3>& made_mm) {
+  const auto size = [](const std::array<double, 3>& s) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g mm", s[0], s[1], s[2]);
+    return std::string(text);
+  };
+  return "the labels were made on voxels of " + size(made_mm) + " and are stored as " + size(stored_mm) + ": they are taken as they were made (--as-stored takes the stored voxels)";
 }
 
 }  // namespace stackmesh

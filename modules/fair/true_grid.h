@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string>
 
 #include "model/label_volume.h"
 
@@ -18,5 +19,8 @@ struct TrueGrid {
 /// planes that differ, all of them at the ends of blocks, and most ends of blocks among them.
 /// @return nothing where the labels are as fine as they are stored.
 std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads);
+
+/// What to say of labels that were taken from a grid finer than theirs; sizes of a voxel, mm.
+std::string true_grid_warning(const std::array<double, 3>& stored_mm, const std::array<double, 3>& made_mm);
 
 }  // namespace stackmesh

@@ -20,4 +20,11 @@ struct InterfaceComplex {
   std::vector<InterfaceTriangle> triangles;
 };
 
+/// How far a surface has come: as stitched, smoothed, or smoothed and remeshed.
+enum class SurfaceLevel { stitched, smoothed, enhanced };
+
+inline const char* to_text(SurfaceLevel level) {
+  return level == SurfaceLevel::enhanced ? "enhanced" : level == SurfaceLevel::smoothed ? "smoothed" : "stitched";
+}
+
 }  // namespace stackmesh

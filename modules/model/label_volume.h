@@ -41,6 +41,14 @@ struct LabelVolume {
   }
 };
 
+/// Whether a volume is as its comments above say: as many voxels as the size asks for, each with an entry in `labels`, spacing above 0, orthonormal axes, labels that ascend
+/// behind the background, and a voxel that is not background. @param name what the error calls it @throws Error(input)
+void check_label_volume(const LabelVolume& volume, const std::string& name);
+
+/// A volume of label numbers, x fastest, 0 for the background; place and names are set afterwards.
+/// @throws Error(input) for negative labels, for more than 65,535 of them, or where numbers and size do not match
+LabelVolume volume_of_labels(const std::vector<Label>& numbers, const std::array<int, 3>& size, const std::array<double, 3>& spacing_mm);
+
 /// Voxels of each entry of volume.labels.
 std::vector<std::size_t> count_voxels(const LabelVolume& volume);
 

@@ -27,8 +27,8 @@
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
 #include "pipeline/solve_with_calculix.h"
-#include "pipeline/stage_clock.h"
-#include "pipeline/voids.h"
+#include "base/stage_clock.h"
+#include "mesh/voids.h"
 #include "report/html_report.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
@@ -41,7 +41,7 @@ constexpr std::size_t kMostMeshes = 3;  // of --accuracy
 
 class FemRun {
  public:
-  FemRun(const FemRunOptions& options, Progress& progress) : o_(options), progress_(progress) {}
+  FemRun(const FemRunOptions& options, Monitor& progress) : o_(options), progress_(progress) {}
 
   RunReport run() {
     std::vector<std::string> all = o_.mesh.outputs;
@@ -51,7 +51,7 @@ class FemRun {
     if (!o_.materials.empty()) {
       plan_ = read_law(o_.materials);
       if (o_.erode_px) plan_->mapping.erode_px = *o_.erode_px;
-      plan_->mapping.threads = o_.mesh.threads;
+      plan_->mapping.threads = o_.mesh.mesh.threads;
     }
     if (o_.accuracy_rel) check_accuracy();
     if (!o_.image.empty()) image_ = read_image(o_.image, {"", o_.mesh.input.allow_outside});
@@ -105,16 +105,16 @@ class FemRun {
     const std::vector<Label> behind = voids_behind(product.mesh.faces);
     if (product.space == WorldSpace::ras)  // it was read and judged in LPS
       to_ras(product.mesh.points);
-    if (o_.mesh.order == 2 && product.mesh.mid.empty()) {
+    if (o_.mesh.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
-      order.threads = o_.mesh.threads;
+      order.threads = o_.mesh.mesh.threads;
       clock.run("volume", [&] { product.mesh = raise_order(std::move(product.mesh), order).mesh; });
     }
-    if (o_.mesh.refine > 0) {
-      const double tets = static_cast<double>(product.mesh.tets.size()) * std::pow(8, o_.mesh.refine);
-      if (!o_.mesh.many_tets && tets > 1e7)
+    if (o_.mesh.mesh.refine > 0) {
+      const double tets = static_cast<double>(product.mesh.tets.size()) * std::pow(8, o_.mesh.mesh.refine);
+      if (!o_.mesh.mesh.many_tets && tets > 1e7)
         fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
-      clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.refine); });
+      clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.mesh.refine); });
     }
     name_voids(product.mesh.faces, behind);
     product.labels.insert(product.labels.end(), voids_.begin(), voids_.end());
@@ -141,7 +141,7 @@ class FemRun {
     scene.values = &report.fem->faces;
     scene.space = product.space == WorldSpace::none ? "none" : o_.mesh.space;
     HtmlOptions options;
-    options.threads = o_.mesh.threads;
+    options.threads = o_.mesh.mesh.threads;
     return draw_pictures(scene, options);
   }
 
@@ -245,7 +245,7 @@ class FemRun {
                      " elements have a Jacobian that is not positive",
                  report.input.path + ", elements " + list, "mesh it again, or turn the elements round where their nodes are in the wrong order");
     }
-    if (o_.mesh.order == 1 && !mesh.mid.empty()) {
+    if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
       mesh.mid.clear();
       report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
     }
@@ -272,15 +272,15 @@ class FemRun {
   /// Its surface only for a report.
   void judge(const TetMesh& mesh, RunReport& report) const {
     if (o_.mesh.reports.empty()) {
-      report.volume = check_volume(mesh, {o_.mesh.threads});
+      report.volume = check_volume(mesh, {o_.mesh.mesh.threads});
       return;
     }
     const InterfaceComplex surface = {mesh.points, mesh.faces};
-    check_mesh(report, surface, &mesh, o_.mesh.threads);
+    check_mesh(report, surface, &mesh, o_.mesh.mesh.threads);
     Judged judged;
     judged.surface = &surface;
     judged.mesh = &mesh;
-    judged.threads = o_.mesh.threads;
+    judged.threads = o_.mesh.mesh.threads;
     complete_report(report, judged);
     report.provenance = find_provenance({report.input.path});
   }
@@ -339,7 +339,7 @@ class FemRun {
     return text + std::string(a.elements.size() < kMostMeshes ? "a finer one would have more than " + std::to_string(most_elements()) + " elements (--yes solves it)"
                                                              : "begin with smaller edges");
   }
-  std::size_t most_elements() const { return o_.mesh.order == 2 ? 150000 : 1000000; }
+  std::size_t most_elements() const { return o_.mesh.mesh.order == 2 ? 150000 : 1000000; }
 
   /// Solves the load case on the mesh, on its tetrahedra cut into eight, and once more, until what changes is small enough. The last
   /// model is the one that is written.
@@ -358,15 +358,15 @@ class FemRun {
       MeshWriteOptions write = o_.mesh.write;
       write.space = product.space;
       const auto begin = std::chrono::steady_clock::now();
-      const std::vector<Vec3> moved = solve_with_calculix(first, write, o_.mesh.threads, o_.mesh.fill.timeout_s);
+      const std::vector<Vec3> moved = solve_with_calculix(first, write, o_.mesh.mesh.threads, o_.mesh.mesh.fill.timeout_s);
       out.solve_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
       out.elements.push_back(model.mesh.tets.size());
       measures.push_back(recover_stress(first, moved));
       if (measures.size() > 1) {
-        out.estimate = estimate_error(measures, o_.mesh.order);
+        out.estimate = estimate_error(measures, o_.mesh.mesh.order);
         out.reached = out.estimate.error_rel <= out.asked_rel;
       }
-      if (out.reached || measures.size() == kMostMeshes || (!o_.mesh.many_tets && measures.size() > 1 && 8 * model.mesh.tets.size() > most_elements())) return out;
+      if (out.reached || measures.size() == kMostMeshes || (!o_.mesh.mesh.many_tets && measures.size() > 1 && 8 * model.mesh.tets.size() > most_elements())) return out;
       product.mesh = refine_tets(std::move(product.mesh), 1);
       built = build(product);
     }
@@ -470,7 +470,7 @@ class FemRun {
   }
 
   const FemRunOptions& o_;
-  Progress& progress_;
+  Monitor& progress_;
   std::optional<MaterialPlan> plan_;
   std::optional<IntensityVolume> image_;
   std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
@@ -479,6 +479,6 @@ class FemRun {
 
 }  // namespace
 
-RunReport run_fem(const FemRunOptions& options, Progress& progress) { return FemRun(options, progress).run(); }
+RunReport run_fem(const FemRunOptions& options, Monitor& progress) { return FemRun(options, progress).run(); }
 
 }  // namespace stackmesh

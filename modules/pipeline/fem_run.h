@@ -27,6 +27,6 @@ struct FemRunOptions {
 /// Labels, or a volume mesh made before, to a solver model in the formats of the outputs: sets, materials, decks.
 /// @throws Error as run_mesh(); Error(input) for what fem's functions refuse, and for a given mesh without tetrahedra or with
 /// elements whose Jacobian is not positive (they are listed)
-RunReport run_fem(const FemRunOptions& options, Progress& progress);
+RunReport run_fem(const FemRunOptions& options, Monitor& progress);
 
 }  // namespace stackmesh

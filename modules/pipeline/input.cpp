@@ -17,12 +17,20 @@ namespace stackmesh {
 namespace {
 
 /// How the drawn labels are to end.
-void choose_caps(const InputOptions& options, const std::vector<LabelContours>& files, ContourStackOptions& contours) {
-  contours.caps = options.caps;
+void choose_caps(const InputOptions& options, Input& input) {
+  input.drawn.caps = options.caps;
   std::vector<LabelInfo> known = {{0, ""}};
-  for (const LabelContours& f : files) known.push_back({f.label, f.name});
+  for (const LabelContours& f : input.contours) known.push_back({f.label, f.name});
   for (const auto& [text, caps] : options.label_caps)
-    for (std::size_t k : resolve_labels(known, text, "--caps")) contours.label_caps[known[k].number] = caps;
+    for (std::size_t k : resolve_labels(known, text, "--caps")) input.drawn.label_caps[known[k].number] = caps;
+}
+
+/// The labels that contours are drawn of, ascending.
+std::vector<LabelInfo> labels_of(const std::vector<LabelContours>& contours) {
+  std::vector<LabelInfo> labels;
+  for (const LabelContours& f : contours) labels.push_back({f.label, f.name, f.colour});
+  std::stable_sort(labels.begin(), labels.end(), [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
+  return labels;
 }
 
 void read_contours(const InputOptions& options, Input& input) {
@@ -55,31 +63,24 @@ void read_contours(const InputOptions& options, Input& input) {
     for (std::size_t k : keep) chosen.push_back(files[k - 1]);
     files = std::move(chosen);
   }
-  ContourStackOptions contours;
-  contours.merge = options.merge;
-  choose_caps(options, files, contours);
   input.kind = "contours";
-  input.sections = sections_from_contours(files, input.warnings, contours);
-  input.labels.assign(input.sections->labels.begin() + 1, input.sections->labels.end());
+  input.contours = std::move(files);
 }
 
 void read_structures(const InputOptions& options, const std::string& path, Input& input) {
   if (options.spacing_mm) fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: contours are in mm");
   StructureSet set = read_structure_set(path, options.labels);
   input.warnings = std::move(set.warnings);
-  ContourStackOptions contours;
+  ContourStackOptions& contours = input.drawn;
   contours.slices = true;
   contours.same_height_mm = 0.01;
   contours.first_wins = !options.labels.empty();
   contours.report_overlaps = !options.merge;
   contours.fill_missing = contours.repair = true;
-  contours.merge = options.merge;
   contours.frame = set.frame;
-  choose_caps(options, set.structures, contours);
   input.kind = "rtstruct";
   input.anatomical = true;
-  input.sections = sections_from_contours(set.structures, input.warnings, contours);
-  input.labels.assign(input.sections->labels.begin() + 1, input.sections->labels.end());
+  input.contours = std::move(set.structures);
 }
 
 void read_volume(const InputOptions& options, Input& input) {
@@ -125,7 +126,7 @@ std::set<Label> resolve_voids(const std::string& text, const std::vector<LabelIn
   return voids;
 }
 
-/// With voids, --merge is about the labels that are filled: they become the smallest of them, and the voids stay what they are.
+/// --merge: the labels that are filled become the smallest of them, and the voids stay what they are.
 void merge_filled(Input& input) {
   const auto filled = [&](Label l) { return l != 0 && input.voids.count(l) == 0; };
   Label kept = 0;
@@ -133,27 +134,17 @@ void merge_filled(Input& input) {
     if (filled(l.number) && (kept == 0 || l.number < kept)) kept = l.number;
   const auto goes = [&](const LabelInfo& l) { return filled(l.number) && l.number != kept; };
   input.labels.erase(std::remove_if(input.labels.begin(), input.labels.end(), goes), input.labels.end());
-  if (input.volume) {
-    LabelVolume& v = *input.volume;
-    std::vector<LabelInfo> labels;
-    std::vector<std::uint16_t> to(v.labels.size(), 0);
-    for (std::size_t k = 0; k < v.labels.size(); ++k)
-      if (!goes(v.labels[k])) to[k] = static_cast<std::uint16_t>(labels.size()), labels.push_back(v.labels[k]);
-    const auto at = std::find_if(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return l.number == kept; });
-    for (std::size_t k = 0; k < v.labels.size(); ++k)
-      if (goes(v.labels[k])) to[k] = static_cast<std::uint16_t>(at - labels.begin());
-    v.labels = std::move(labels);
-    for (std::uint16_t& x : v.voxels) x = to[x];
-    return;
-  }
-  std::vector<LabelInfo>& labels = input.sections->labels;
-  labels.erase(std::remove_if(labels.begin() + 1, labels.end(), goes), labels.end());
-  for (Section& s : input.sections->sections) {
-    for (SectionEdge& e : s.edges)
-      for (Label* side : {&e.left, &e.right})
-        if (filled(*side)) *side = kept;
-    s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
-  }
+  if (!input.volume) return;
+  LabelVolume& v = *input.volume;
+  std::vector<LabelInfo> labels;
+  std::vector<std::uint16_t> to(v.labels.size(), 0);
+  for (std::size_t k = 0; k < v.labels.size(); ++k)
+    if (!goes(v.labels[k])) to[k] = static_cast<std::uint16_t>(labels.size()), labels.push_back(v.labels[k]);
+  const auto at = std::find_if(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return l.number == kept; });
+  for (std::size_t k = 0; k < v.labels.size(); ++k)
+    if (goes(v.labels[k])) to[k] = static_cast<std::uint16_t>(at - labels.begin());
+  v.labels = std::move(labels);
+  for (std::uint16_t& x : v.voxels) x = to[x];
 }
 
 }  // namespace
@@ -168,13 +159,21 @@ Input read_input(const InputOptions& asked) {
   if (is_contour_input(options.paths[0])) read_contours(options, input);
   else if (const std::string file = structure_set_in(options.paths); !file.empty()) read_structures(options, file, input);
   else read_volume(options, input);
+  if (!input.volume) {
+    input.labels = labels_of(input.contours);
+    choose_caps(options, input);
+  }
   if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);
   // Names come from files and file names: control characters in them would reach terminals and split lines of decks.
   for (LabelInfo& label : input.labels) label.name = printable(label.name);
   input.voids = resolve_voids(options.voids, input.labels);
   if (input.volume)
     for (LabelInfo& label : input.volume->labels) label.name = printable(label.name);
-  if (merges_later) merge_filled(input);
+  if (!input.volume) {
+    input.drawn.merge = asked.merge;
+    input.drawn.not_merged = input.voids;
+  }
+  if (merges_later || input.drawn.merge) merge_filled(input);
   return input;
 }
 
@@ -187,14 +186,21 @@ void empty_voids(Input& input) {
     for (std::size_t k = 1; k < input.volume->labels.size(); ++k)
       if (!is_void(input.volume->labels[k])) keep.push_back(k);
     input.volume = select_labels(std::move(*input.volume), keep, false);
-    return;
   }
-  std::vector<LabelInfo>& labels = input.sections->labels;
-  labels.erase(std::remove_if(labels.begin() + 1, labels.end(), is_void), labels.end());
-  for (Section& s : input.sections->sections) {
+}
+
+Stack drawn_sections(Input& input) {
+  return sections_from_contours(input.contours, input.warnings, input.drawn);
+}
+
+void empty_voids(Stack& stack, const std::set<Label>& voids) {
+  if (voids.empty()) return;
+  std::vector<LabelInfo>& labels = stack.labels;
+  labels.erase(std::remove_if(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return voids.count(l.number) > 0; }), labels.end());
+  for (Section& s : stack.sections) {
     for (SectionEdge& e : s.edges)
       for (Label* side : {&e.left, &e.right})
-        if (input.voids.count(*side) > 0) *side = 0;
+        if (voids.count(*side) > 0) *side = 0;
     s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
   }
 }
@@ -204,13 +210,7 @@ std::array<double, 3> reduce_to_true_grid(Input& input, int threads) {
   std::optional<TrueGrid> grid = find_true_grid(*input.volume, threads);
   if (!grid) return stored;
   const std::array<double, 3> made = grid->volume.spacing_mm;
-  const auto size = [](const std::array<double, 3>& s) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g mm", s[0], s[1], s[2]);
-    return std::string(text);
-  };
-  input.warnings.push_back("the labels were made on voxels of " + size(made) + " and are stored as " + size(stored) +
-                           ": they are taken as they were made (--as-stored takes the stored voxels)");
+  input.warnings.push_back(true_grid_warning(stored, made));
   input.volume = std::move(grid->volume);
   return made;
 }
@@ -221,10 +221,7 @@ void check_stack_axis(const Input& input, StackAxis axis) {
       fail_usage("contours are stacked as they are drawn", "--axis", "leave --axis out");
     return;
   }
-  const int a = stacking_axis(*input.volume, axis);
-  if (input.volume->size[a] < 2)
-    fail_input(std::string("only one slice along the stacking axis ") + "xyz"[a], input.path,
-               "give a stack of at least two slices, or choose another --axis");
+  check_slices(*input.volume, axis, input.path);
 }
 
 }  // namespace stackmesh

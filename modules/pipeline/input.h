@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "sections/extract.h"
+#include "model/contours.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
+#include "sections/polygons.h"
+#include "sections/volume_sections.h"
 #include "stitch/stitch.h"
 
 namespace stackmesh {
@@ -26,10 +28,11 @@ struct InputOptions {
   std::string names;                                ///< label table (fem/label_table.h) that names labels; empty: none
 };
 
-/// The input as read: a volume or, for contours, sections.
+/// The input as read: a volume, or contours and how they are to become sections.
 struct Input {
   std::optional<LabelVolume> volume;
-  std::optional<Stack> sections;
+  std::vector<LabelContours> contours;  ///< one entry a label
+  ContourStackOptions drawn;
   bool anatomical = false;        ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
   std::string path, kind;
   std::vector<LabelInfo> labels;  ///< without the background
@@ -40,8 +43,12 @@ struct Input {
 /// Reads the input and keeps the labels that were asked for. @throws Error(input), Error(usage)
 Input read_input(const InputOptions& options);
 
+/// The sections that the contours make; what was odd with them goes to the input's warnings. @throws as sections_from_contours()
+Stack drawn_sections(Input& input);
+
 /// Makes background of the voids: what a mesh that leaves them empty is judged against.
 void empty_voids(Input& input);
+void empty_voids(Stack& stack, const std::set<Label>& voids);
 
 /// Puts a label volume that is stored finer than it was made onto the grid on which it was made, with a warning that says so.
 /// @return its voxels there, or as they are stored where nothing tells otherwise, mm

@@ -45,11 +45,11 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
 void check_mesh_outputs(const MeshRunOptions& o) {
   for (const std::string& path : o.outputs) {
     const bool surface = is_surface_format(path), volume = is_volume_format(path);
-    if (!surface && !(volume && o.target == Target::volume))
+    if (!surface && !(volume && o.mesh.target == Target::volume))
       fail_usage(volume ? "a surface cannot be written to a volume format" : "unknown ending of an output", "'" + path + "'",
-                 o.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
+                 o.mesh.target == Target::volume ? "choose .vtu .msh .inp .feb .bdf .vtk .mesh, or for the surface .stl .ply .obj .off .vtp"
                                             : "choose .stl .ply .obj .off .vtp");
-    if (o.order == 2 && ends_with(path, ".mesh"))
+    if (o.mesh.order == 2 && ends_with(path, ".mesh"))
       fail_usage("second-order tetrahedra are not written to Medit's .mesh", "'" + path + "' with --order 2", "choose .vtu .msh .inp .feb .bdf or .vtk");
   }
   check_report_names(o.reports);

@@ -13,7 +13,7 @@
 #include "pipeline/provenance.h"
 #include "pipeline/output_files.h"
 #include "pipeline/report_names.h"
-#include "pipeline/stage_clock.h"
+#include "base/stage_clock.h"
 #include "pipeline/turn_as_a_whole.h"
 #include "report/html_report.h"
 #include "validate/defects.h"
@@ -39,6 +39,7 @@ std::string plain(const std::string& name) {
 /// What is read once for all meshes.
 struct Against {
   Input input;
+  Stack sections;  // of contours
   std::array<int, 3> stored_size = {0, 0, 0};  // of a volume, as its file has it
   std::array<double, 3> stored_spacing_mm = {0, 0, 0};
   Frame stored_frame;  // from the centre of its first voxel
@@ -49,7 +50,7 @@ struct Against {
 /// One mesh, from its file to its verdicts.
 class ValidateRun {
  public:
-  ValidateRun(const ValidateRunOptions& options, Against* against, const RunReport& start, Progress& progress)
+  ValidateRun(const ValidateRunOptions& options, Against* against, const RunReport& start, Monitor& progress)
       : o_(options), against_(against), report_(start), clock_(progress, report_.stages) {}
 
   RunReport run(const std::string& path) {
@@ -71,7 +72,7 @@ class ValidateRun {
     scene.surface = &surface_;
     if (!tets_.tets.empty()) scene.mesh = &tets_;
     if (against_ && against_->input.volume) scene.volume = selected_ ? &*selected_ : &*against_->input.volume;
-    if (against_ && against_->input.sections) scene.sections = &*against_->input.sections;
+    if (against_ && !against_->input.volume) scene.sections = &against_->sections;
     if (against_) scene.stack_axis = against_->axis;
     scene.space = world_ == WorldSpace::lps ? "lps" : world_ == WorldSpace::ras ? "ras" : "none";
     HtmlOptions options;
@@ -138,7 +139,7 @@ class ValidateRun {
 
   void take_frame() {
     JudgedMesh& m = *report_.mesh;
-    const bool anatomical = against_ && against_->input.volume && against_->input.volume->anatomical;
+    const bool anatomical = against_ && against_->input.anatomical;
     const bool known = anatomical || !against_;
     if (o_.mesh_space == "image") {
       take_image_frame(anatomical);
@@ -157,6 +158,10 @@ class ValidateRun {
       m.space = told == WorldSpace::ras ? "ras" : told == WorldSpace::lps ? "lps" : "none";
       world_ = told.value_or(WorldSpace::none);
       m.space_reason = o_.mesh_space != "auto" ? "as told by --mesh-space" : told ? "the file says so" : "the file does not say, and there are no labels to compare with";
+      return;
+    }
+    if (!against_->input.volume) {
+      take_told_frame(told);
       return;
     }
     if (told) {
@@ -184,6 +189,14 @@ class ValidateRun {
     m.space = is_ras ? "ras" : "lps";
     m.space_reason = "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
     if (std::abs(lps - ras) < 0.05) warn("the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space");
+    if (is_ras) to_lps();
+  }
+
+  /// Against drawn contours, which have no voxels to compare with.
+  void take_told_frame(const std::optional<WorldSpace>& told) {
+    const bool is_ras = told == WorldSpace::ras;
+    report_.mesh->space = is_ras ? "ras" : "lps";
+    report_.mesh->space_reason = !told ? "neither the mesh nor the contours say: taken as LPS" : std::string(o_.mesh_space != "auto" ? "--mesh-space tells " : "the file tells ") + (is_ras ? "RAS" : "LPS");
     if (is_ras) to_lps();
   }
 
@@ -453,7 +466,7 @@ class ValidateRun {
     if (!tets_.tets.empty()) j.mesh = &tets_;
     if (against_) {
       if (against_->input.volume) j.volume = &*against_->input.volume;
-      if (against_->input.sections) j.sections = &*against_->input.sections;
+      if (!against_->input.volume) j.sections = &against_->sections;
       j.axis = against_->axis;
     }
     if (!fidelity_.empty()) j.fidelity = &fidelity_;
@@ -519,14 +532,14 @@ void describe_input(const Against& against, RunReport& report) {
     report.input.sections = static_cast<std::size_t>(v.size[against.axis]);
     report.input.space = v.anatomical ? "lps" : "none";
   } else {
-    report.input.sections = against.input.sections->sections.size();
-    report.input.space = "none";
+    report.input.sections = against.sections.sections.size();
+    report.input.space = against.input.anatomical ? "lps" : "none";
   }
 }
 
 }  // namespace
 
-std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progress) {
+std::vector<RunReport> run_validate(const ValidateRunOptions& o, Monitor& progress) {
   check_names(o);
   RunReport start;
   start.command = "validate";
@@ -542,6 +555,10 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Progress& progr
         against.emplace();
         against->input = read_input(*o.against);
         empty_voids(against->input);
+        if (!against->input.volume) {
+          against->sections = drawn_sections(against->input);
+          empty_voids(against->sections, against->input.voids);
+        }
         if (against->input.volume) {
           against->stored_size = against->input.volume->size;
           against->stored_spacing_mm = against->input.volume->spacing_mm;

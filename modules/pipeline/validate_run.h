@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "sections/extract.h"
 #include "meshio/read_mesh.h"
 #include "pipeline/input.h"
@@ -31,6 +31,6 @@ struct ValidateRunOptions {
 /// Judges each mesh on its own and against the labels: read, frame, match labels, check, find defects, give verdicts,
 /// write. Everything that is written appears whole or not at all. Returns a report for each mesh; exit_code() of their
 /// verdicts is the command's. @throws Error: usage, input (also when mesh and labels do not overlap), output.
-std::vector<RunReport> run_validate(const ValidateRunOptions& options, Progress& progress);
+std::vector<RunReport> run_validate(const ValidateRunOptions& options, Monitor& progress);
 
 }  // namespace stackmesh

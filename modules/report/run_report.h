@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stage_clock.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/estimate_error.h"
@@ -18,11 +19,6 @@
 #include "validate/verdict.h"
 
 namespace stackmesh {
-
-struct StageTime {
-  std::string name;
-  double wall_s = 0, cpu_s = 0;
-};
 
 /// A row of the report: one label of the input.
 struct LabelReport {

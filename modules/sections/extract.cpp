@@ -68,7 +68,7 @@ int stacking_axis(const LabelVolume& volume, StackAxis axis) {
   return other >= 0 ? other : best;
 }
 
-ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress, const FairedLabels* faired) {
+ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Monitor& progress, const FairedLabels* faired) {
   ContourResult result;
   result.axis = stacking_axis(volume, options.axis);
   const StackAxes axes = axes_for(result.axis);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "model/faired_labels.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
@@ -38,7 +38,7 @@ struct ContourResult {
 /// cross. With simplify_px == 0 each label's area in a section is its pixel count, exactly.
 /// @param faired where the corners of the contours lie; null: at the corners of the pixels
 /// @throws Error(input) for fewer than two slices along the axis or no label at all.
-ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Progress& progress,
+ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Monitor& progress,
                                const FairedLabels* faired = nullptr);
 
 /// The axis that `automatic` stands for: 0, 1 or 2.

@@ -66,20 +66,21 @@ std::vector<ContourPolygon> cut(const InterfaceComplex& surface, double z_mm) {
 }
 
 /// The section in which the stitched stack meets a plane.
-ContourSection cut_stitched(Stack& stack, double z_mm) {
+ContourSection cut_stitched(Stack stack, double z_mm) {
   StitchOptions options;
   options.caps = Caps::round;
   options.threads = 1;
-  Progress silent;
-  const InterfaceComplex surface = stitch_sections(stack, options, silent).complex;
+  Monitor silent;
+  const Vec3 origin = stack.frame.origin;
+  const InterfaceComplex surface = stitch_sections(std::move(stack), options, silent).complex;
   ContourSection section;
   section.z_mm = z_mm;
   section.interpolated = true;
   section.polygons = cut(surface, z_mm);
   for (ContourPolygon& polygon : section.polygons)
     for (Point& p : polygon.points) {
-      p[0] += stack.frame.origin.x;
-      p[1] += stack.frame.origin.y;
+      p[0] += origin.x;
+      p[1] += origin.y;
     }
   return section;
 }
@@ -96,8 +97,7 @@ Stack stack_of(const ContourSection& low, const ContourSection& high) {
 }  // namespace
 
 ContourSection contours_between(const ContourSection& low, const ContourSection& high, double z_mm) {
-  Stack stack = stack_of(low, high);
-  return cut_stitched(stack, z_mm);
+  return cut_stitched(stack_of(low, high), z_mm);
 }
 
 ContourSection dome_section(const ContourSection& last, double gap_mm, bool slices, double way_mm) {
@@ -108,7 +108,7 @@ ContourSection dome_section(const ContourSection& last, double gap_mm, bool slic
   stack.drawn_ends.clear();
   stack.slices = slices;
   stack.end_gap_mm = gap_mm;
-  return cut_stitched(stack, last.z_mm + way_mm);
+  return cut_stitched(std::move(stack), last.z_mm + way_mm);
 }
 
 }  // namespace stackmesh

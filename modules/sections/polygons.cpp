@@ -73,7 +73,7 @@ class SectionMaker {
     measure();
     std::vector<MaskedSection> masked;
     for (std::size_t i = 0; i < levels_.size(); ++i) masked.push_back(make_section(levels_[i], thickness(i)));
-    if (!options_.merge) warn_open_walls(masked);
+    if (!options_.merge || !options_.not_merged.empty()) warn_open_walls(masked);
     rank_labels();
     Stack stack;
     stack.slices = options_.slices;
@@ -251,15 +251,17 @@ class SectionMaker {
                           " mm, where its usual gap of " + text_of(usual, "%.3g") + " mm asks for some; it is interpolated there");
   }
 
-  /// All labels become the smallest one; what lay between two of them goes.
+  /// The labels that are merged become the smallest of them; what lay between two of them goes.
   void merge_labels(Stack& stack) const {
-    const Label kept = stack.labels[1].number;
-    stack.labels.resize(2);
+    const auto merges = [&](Label l) { return l != 0 && options_.not_merged.count(l) == 0; };
+    const auto first = std::find_if(stack.labels.begin(), stack.labels.end(), [&](const LabelInfo& l) { return merges(l.number); });
+    if (first == stack.labels.end()) return;
+    const Label kept = first->number;
+    stack.labels.erase(std::remove_if(stack.labels.begin(), stack.labels.end(), [&](const LabelInfo& l) { return merges(l.number) && l.number != kept; }), stack.labels.end());
     for (Section& s : stack.sections) {
-      for (SectionEdge& e : s.edges) {
-        e.left = e.left != 0 ? kept : 0;
-        e.right = e.right != 0 ? kept : 0;
-      }
+      for (SectionEdge& e : s.edges)
+        for (Label* side : {&e.left, &e.right})
+          if (merges(*side)) *side = kept;
       s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
     }
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct ContourStackOptions {
   bool fill_missing = false;       ///< heights that a label lacks between its own get contours made from their neighbours
   bool repair = false;             ///< contours of one label that cross are united where even-odd says nearly the same
   bool merge = false;              ///< all contours become one label, numbered as the smallest
+  std::set<Label> not_merged;      ///< but for these
   Frame frame;                     ///< plane coordinates and height of the contours to the world
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/error.h"
 #include "fair/fair_labels.h"
 #include "sections/virtual_slices.h"
 #include "sections/gap_pieces.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kSimplifyFaired_px = 0.05, kSimplifyCracks_px = 0.5;
 
-VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_per_gap, const SectionOptions& options, Progress& progress) {
+VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_per_gap, const SectionOptions& options, Monitor& progress) {
   ContourOptions contours = options.contours;
   contours.axis = std::array{StackAxis::x, StackAxis::y, StackAxis::z}[axis];  // the spacing of a dense volume would choose anew
   contours.virtual_per_gap = virtual_per_gap;
@@ -44,7 +45,13 @@ VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_p
 
 }  // namespace
 
-VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Progress& progress) {
+void check_slices(const LabelVolume& volume, StackAxis axis, const std::string& name) {
+  const int a = stacking_axis(volume, axis);
+  if (volume.size[a] < 2)
+    fail_input(std::string("only one slice along the stacking axis ") + "xyz"[a], name, "give a stack of at least two slices, or choose another --axis");
+}
+
+VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Monitor& progress) {
   const int axis = stacking_axis(volume, options.contours.axis);
   InterpolateOptions between;
   between.per_gap = options.virtual_sections;

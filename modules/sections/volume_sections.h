@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "sections/extract.h"
 #include "model/complex.h"
 #include "model/label_volume.h"
@@ -26,7 +26,10 @@ struct VolumeSections {
   InterfaceComplex faired;  ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
 };
 
+/// @param name what the error calls the volume @throws Error(input) for fewer than two slices along the stacking axis
+void check_slices(const LabelVolume& volume, StackAxis axis, const std::string& name);
+
 /// A label volume to its sections: virtual slices between far ones, interfaces faired, contours traced and simplified.
-VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Progress& progress);
+VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Monitor& progress);
 
 }  // namespace stackmesh

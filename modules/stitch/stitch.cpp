@@ -28,7 +28,7 @@ struct Extent {
 
 class StackStitcher {
  public:
-  StackStitcher(Stack& stack, const StitchOptions& options, Progress& progress)
+  StackStitcher(Stack& stack, const StitchOptions& options, Monitor& progress)
       : stack_(stack), options_(options), progress_(progress) {}
 
   StitchResult run() {
@@ -225,7 +225,7 @@ class StackStitcher {
 
   Stack& stack_;
   const StitchOptions& options_;
-  Progress& progress_;
+  Monitor& progress_;
   StitchResult result_;
   const Section empty_;
   std::vector<std::pair<Label, std::size_t>> flat_low_, flat_high_;  // label, its first or last section
@@ -237,8 +237,10 @@ class StackStitcher {
 
 }  // namespace
 
-StitchResult stitch_sections(Stack& stack, const StitchOptions& options, Progress& progress) {
-  return StackStitcher(stack, options, progress).run();
+StitchResult stitch_sections(Stack stack, const StitchOptions& options, Monitor& progress) {
+  StitchResult result = StackStitcher(stack, options, progress).run();
+  result.stack = std::move(stack);
+  return result;
 }
 
 }  // namespace stackmesh

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "model/complex.h"
 #include "model/stack.h"
 
@@ -32,6 +32,7 @@ struct LabelCaps {
 
 struct StitchResult {
   InterfaceComplex complex;            ///< stack coordinates, mm
+  Stack stack;                         ///< the sections as they were stitched: snap-rounded, so that edges meet at common end points only
   std::size_t added_points = 0;        ///< points that no section has (paper 3.3)
   std::map<Label, LabelCaps> caps;
   double snap_used_mm = 0;             ///< largest merge tolerance that was applied
@@ -39,10 +40,10 @@ struct StitchResult {
 };
 
 /// Stitches a stack of sections into the closed complex of all label interfaces
-/// [Wang et al. 2005, section 3; docs/stitching.md]. The sections are snap-rounded in place first. Closed and
+/// [Wang et al. 2005, section 3; docs/stitching.md]. The sections are snap-rounded first. Closed and
 /// free of self-intersections for every stack whose sections are partitions of the plane.
 /// @throws Error(input) naming section and place where a section is no partition, Error(no_result) when the
 /// stack holds no label.
-StitchResult stitch_sections(Stack& stack, const StitchOptions& options, Progress& progress);
+StitchResult stitch_sections(Stack stack, const StitchOptions& options, Monitor& progress);
 
 }  // namespace stackmesh

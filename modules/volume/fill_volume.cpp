@@ -111,7 +111,7 @@ std::string describe(const Call& call, const std::string& switches) {
          (call.turns == 0 ? "" : " with the axes turned " + std::string(call.turns == 1 ? "once" : "twice"));
 }
 
-/// What TetGen complained about, as one line; empty if it did not complain. Progress, point numbers (they are
+/// What TetGen complained about, as one line; empty if it did not complain. Monitor, point numbers (they are
 /// not the complex's) and hints are left out.
 std::string complaint(const std::string& text) {
   static const char* const signs[] = {"intersect",       "Invalid PLC",   "duplicated", "nearly overlap",

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancel.h"
 #include "volume/improve_mesh.h"
 #include "volume/improve_moves.h"
 #include "volume/improve_pieces.h"
@@ -69,6 +70,7 @@ class Improver {
     const auto bad = [&] { return m_.tets[t].alive() && m_.quality[t] < goal_; };
     if (!bad()) return false;
     ++c_.steps;
+    stop_if_cancelled();
     if (moves_.remove_edge(t)) return ++c_.edges, true;
     if (moves_.remove_face(t)) return ++c_.faces, true;
     bool any = false;

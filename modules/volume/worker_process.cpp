@@ -14,6 +14,7 @@
 #include <optional>
 #include <thread>
 
+#include "base/cancel.h"
 #include "base/error.h"
 #include "volume/worker_protocol.h"
 
@@ -167,9 +168,10 @@ class Exchange {
     for (;;) {
       const auto left =
           std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+      stop_if_cancelled();  // the worker is ended on the way out
       if (left <= 0 || (given_up && *given_up)) return End::timed_out;
       pollfd p{channel_, static_cast<short>(sending() ? POLLIN | POLLOUT : POLLIN), 0};
-      const int ready = poll(&p, 1, static_cast<int>(std::min<long long>(left, given_up ? 50 : 1000)));
+      const int ready = poll(&p, 1, static_cast<int>(std::min<long long>(left, given_up || cancelling_monitor() != nullptr ? 50 : 1000)));
       if (ready < 0 && errno != EINTR) return End::closed;
       if (ready <= 0) continue;
       if ((p.revents & POLLOUT) && sending()) send_some();

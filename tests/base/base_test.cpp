@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/parallel.h"
-#include "base/progress.h"
+#include "base/monitor.h"
 
 namespace stackmesh {
 namespace {
@@ -93,14 +93,14 @@ TEST(ThreadCount, ZeroIsTheMachine) {
 
 std::string shown(ProgressMode mode) {
   testing::internal::CaptureStderr();  // no terminal
-  const auto progress = make_terminal_progress(mode);
+  const auto progress = make_terminal_monitor(mode);
   progress->begin("read");
   for (int i = 0; i <= 100; ++i) progress->advance(i / 100.0);
   progress->end();
   return testing::internal::GetCapturedStderr();
 }
 
-TEST(Progress, PlainIsALineAStageAndTheOthersAreSilentInAPipe) {
+TEST(Monitor, PlainIsALineAStageAndTheOthersAreSilentInAPipe) {
   EXPECT_EQ(shown(ProgressMode::none), "");
   EXPECT_EQ(shown(ProgressMode::automatic), "");
   const std::string plain = shown(ProgressMode::plain);

@@ -28,7 +28,7 @@ void ContoursOfLungs(benchmark::State& state) {
   static const LabelVolume volume = read_label_volume(kLungs);
   ContourOptions options;
   options.threads = static_cast<int>(state.range(0));
-  Progress quiet;
+  Monitor quiet;
   std::size_t vertices = 0;
   for (auto _ : state) vertices = extract_sections(volume, options, quiet).vertices;
   state.counters["vertices"] = static_cast<double>(vertices);

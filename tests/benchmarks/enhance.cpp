@@ -53,7 +53,7 @@ const Surface& organ(int side) {
   }
   std::vector<std::string> warnings;
   Stack stack = sections_from_contours({file}, warnings);
-  Progress quiet;
+  Monitor quiet;
   s.complex = stitch_sections(stack, {}, quiet).complex;
   return s;
 }
@@ -63,7 +63,7 @@ const Surface* heart() {
   const std::string path = std::string(STACKMESH_SHARED_DATA) + "/heart_totalseg/heart.nii.gz";
   if (!std::filesystem::exists(path)) return nullptr;
   if (s.complex.points.empty()) {
-    Progress quiet;
+    Monitor quiet;
     Stack stack = extract_sections(read_label_volume(path), {}, quiet).stack;
     s.pixel_mm = stack.pixel_mm;
     s.gap_mm = (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(stack.sections.size() - 1);
@@ -88,7 +88,7 @@ void Enhance(benchmark::State& state) {
   o.threads = static_cast<int>(state.range(1));
   std::size_t triangles = 0;
   for (auto _ : state) {
-    Progress quiet;
+    Monitor quiet;
     triangles = enhance_complex(s->complex, o, quiet).complex.triangles.size();
   }
   state.counters["from"] = static_cast<double>(s->complex.triangles.size());

@@ -97,7 +97,7 @@ void study_shells(const InterfaceComplex& c, Study& out) {
 int main(int argc, char** argv) {
   const std::string path =
       argc > 1 ? argv[1] : std::string(STACKMESH_SHARED_DATA) + "/torso_totalseg/torso_3mm_61labels.nii.gz";
-  Progress quiet;
+  Monitor quiet;
   Stack stack = extract_sections(read_label_volume(path), {}, quiet).stack;
   EnhanceOptions o;
   o.pixel_mm = stack.pixel_mm;

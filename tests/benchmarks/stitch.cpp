@@ -71,7 +71,7 @@ void stitch(benchmark::State& state, int threads) {
   const Stack input = organ(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   StitchOptions options;
   options.threads = threads;
-  Progress quiet;
+  Monitor quiet;
   std::size_t triangles = 0;
   for (auto _ : state) {
     state.PauseTiming();

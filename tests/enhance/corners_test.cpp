@@ -12,7 +12,7 @@ using namespace stackmesh::testing_support;
 namespace {
 
 EnhanceResult enhance(const InterfaceComplex& c, const EnhanceOptions& o) {
-  Progress quiet;
+  Monitor quiet;
   return enhance_complex(c, o, quiet);
 }
 

@@ -26,7 +26,7 @@ EnhanceOptions options_of(const Stack& stack) {
 }
 
 EnhanceResult enhance(const InterfaceComplex& c, const EnhanceOptions& o) {
-  Progress quiet;
+  Monitor quiet;
   return enhance_complex(c, o, quiet);
 }
 
@@ -342,7 +342,7 @@ TEST(EnhanceComplex, ItIsSaidWhereEdgesStayShorterAndWhy) {
   const auto told = [](const InterfaceComplex& c, double edge_mm) {
     EnhanceOptions o;
     o.edge_length_mm = edge_mm;
-    Progress quiet;
+    Monitor quiet;
     std::string all;
     for (const std::string& w : enhance_complex(c, o, quiet).warnings) all += w + "\n";
     return all;

@@ -21,7 +21,7 @@ EnhanceResult enhance(const InterfaceComplex& c, double edge_mm, double pixel_mm
   o.edge_length_mm = edge_mm;
   o.pixel_mm = o.gap_mm = pixel_mm;
   o.smooth_passes = 0;
-  Progress quiet;
+  Monitor quiet;
   return enhance_complex(c, o, quiet);
 }
 
@@ -123,7 +123,7 @@ TEST(EnhanceMending, FacesLongerThanABlockAreSplit) {
     file.sections.push_back(section);
   }
   std::vector<std::string> warnings;
-  Progress quiet;
+  Monitor quiet;
   StitchOptions flat;
   flat.caps = Caps::flat;
   Stack stack = sections_from_contours({file}, warnings);

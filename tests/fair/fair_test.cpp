@@ -37,7 +37,7 @@ LabelVolume ball(double r, std::array<double, 3> spacing) {
 }
 
 Stitched stitch_faired(const LabelVolume& volume, const SectionOptions& sections = {}, StitchOptions stitching = {}) {
-  Progress quiet;
+  Monitor quiet;
   Stitched s;
   stitching.threads = sections.contours.threads;
   s.stack = volume_sections(volume, sections, quiet).contours.stack;
@@ -81,7 +81,7 @@ TEST(Fairing, ABallIsRoundInsteadOfStepped) {
 }
 
 TEST(Fairing, TheSurfaceItselfIsNearerThanWindowedSincGets) {
-  Progress quiet;
+  Monitor quiet;
   const LabelVolume volume = ball(20, {1, 1, 1});
   InterfaceComplex surface = fair_labels(volume, 2, {}, quiet).surface;
   const Vec3 corner = volume.world(-0.5, -0.5, 0);  // where stack coordinates start
@@ -137,7 +137,7 @@ TEST(Fairing, AThinTubeKeepsItsVolume) {
   const auto inside = [](Vec3 p) { return std::abs(p.z) < 14 && std::hypot(p.x - 0.31, p.y + 0.17) < 2 ? 1 : 0; };
   const LabelVolume volume = voxelise(18, {1, 1, 1}, inside);
   const double voxels = static_cast<double>(count_voxels(volume)[1]);
-  Progress quiet;
+  Monitor quiet;
   const Stitched s = stitch_faired(volume);
   EXPECT_NEAR(surface_of(check_surface(s.complex()), 1).volume_mm3, voxels, 0.04 * voxels);
 }
@@ -162,7 +162,7 @@ TEST(Fairing, ScaleAndThreadsDoNotShow) {
   const LabelVolume volume = random_volume(4);
   LabelVolume twice = volume;
   for (double& s : twice.spacing_mm) s *= 2;
-  Progress quiet;
+  Monitor quiet;
   FairOptions one, two;
   one.threads = 1;
   two.threads = 2;

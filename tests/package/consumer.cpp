@@ -14,7 +14,7 @@ int main() {
   for (int k = 0; k < 3; ++k)
     for (int j = 1; j < 3; ++j)
       for (int i = 1; i < 3; ++i) volume.voxels[volume.index(i, j, k)] = 1;
-  stackmesh::Progress quiet;
+  stackmesh::Monitor quiet;
   stackmesh::Stack stack = stackmesh::extract_sections(volume, {}, quiet).stack;
   const stackmesh::StitchResult result = stackmesh::stitch_sections(stack, {}, quiet);
   const stackmesh::SurfaceCheck check = stackmesh::check_surface(result.complex);

@@ -18,7 +18,7 @@ ContourResult extract(const LabelVolume& volume, StackAxis axis, double simplify
   options.axis = axis;
   options.simplify_px = simplify_px;
   options.threads = threads;
-  Progress silent;
+  Monitor silent;
   return extract_sections(volume, options, silent);
 }
 
@@ -224,14 +224,14 @@ TEST(ExtractSections, MarksInterpolatedSections) {
   ContourOptions options;
   options.axis = StackAxis::z;
   options.virtual_per_gap = 2;
-  Progress silent;
+  Monitor silent;
   const Stack stack = extract_sections(v, options, silent).stack;
   for (std::size_t k = 0; k < 7; ++k) EXPECT_EQ(stack.sections[k].interpolated, k % 3 != 0) << k;
   EXPECT_EQ(stack.end_gap_mm, 6);  // an end stands for half a gap of the real slices
 }
 
 TEST(ExtractSections, ProgressEndsAtOne) {
-  struct Watch : Progress {
+  struct Watch : Monitor {
     void advance(double fraction) override { last = std::max(last, fraction); }
     double last = 0;
   } watch;

@@ -180,7 +180,7 @@ LabelLayer noise_layer(std::mt19937& random, double z) {
 }
 
 TEST(LayerSection, NoiseGivesSectionsThatStitchClosed) {
-  Progress quiet;
+  Monitor quiet;
   for (unsigned seed = 0; seed < 150; ++seed) {
     std::mt19937 random(seed);
     Stack stack;
@@ -225,7 +225,7 @@ TEST(LayerSection, APinchOfTheBackgroundPartsALabel) {
 }
 
 TEST(VirtualSections, RandomContoursStitchClosed) {
-  Progress quiet;
+  Monitor quiet;
   for (std::uint64_t seed = 0; seed < 120; ++seed) {
     Stack stack;
     try {

@@ -171,7 +171,7 @@ TEST(ExtractSections, AreasArePixelCountsExactly) {
     const Slice s = random_slice(seed);
     LabelVolume volume = volume_of({s, s});
     volume.spacing_mm = {0.7, 1.3, 2};
-    Progress silent;
+    Monitor silent;
     ContourOptions options;
     options.axis = StackAxis::z;
     options.simplify_px = 0;

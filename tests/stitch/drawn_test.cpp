@@ -70,7 +70,7 @@ Made make(const std::vector<LabelContours>& files, ContourStackOptions options =
   StitchOptions o;
   o.caps = caps;
   o.threads = 1;
-  Progress quiet;
+  Monitor quiet;
   m.result = stitch_sections(m.stack, o, quiet);
   m.check = check_surface(m.result.complex, {1});
   EXPECT_EQ(defects(m.result.complex), "");
@@ -190,7 +190,7 @@ TEST(DrawnEnds, EitherEndHasItsOwnCap) {
   Stack stack = sections_from_contours({file_of(1, every(4, 5), a)}, warnings);
   StitchOptions o;
   o.label_caps[1] = {Caps::round, Caps::flat};
-  Progress quiet;
+  Monitor quiet;
   const StitchResult r = stitch_sections(stack, o, quiet);
   EXPECT_EQ(r.caps.at(1).low, "round");
   EXPECT_EQ(r.caps.at(1).high, "flat");

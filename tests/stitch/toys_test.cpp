@@ -36,7 +36,7 @@ LabelContours label_of(Label label, const std::vector<std::vector<ContourPolygon
 
 StitchResult stitch_contours(const std::vector<LabelContours>& files, const StitchOptions& options = {}) {
   std::vector<std::string> warnings;
-  Progress quiet;
+  Monitor quiet;
   Stack stack = sections_from_contours(files, warnings);
   return stitch_sections(stack, options, quiet);
 }
@@ -221,7 +221,7 @@ TEST(SnapRounding, EightHundredNearCopiesKeepABoundedNumberOfVertices) {
   Stack stack = sections_from_contours({label_of(1, sections, 1)}, warnings);
   snap_round(stack, 0);
   for (const Section& s : stack.sections) EXPECT_LE(s.points.size(), 6u * kPoints);
-  Progress quiet;
+  Monitor quiet;
   EXPECT_EQ(defects(stitch_sections(stack, {}, quiet).complex), "");
 }
 
@@ -234,7 +234,7 @@ TEST(SnapRounding, TenThousandStacksOfNearParallelEdgesCloseAndDoNotCross) {
     state ^= state << 17;
     return state;
   };
-  Progress quiet;
+  Monitor quiet;
   for (int trial = 0; trial < 10000; ++trial) {
     Stack stack;
     stack.slices = false;

@@ -20,7 +20,7 @@ struct Stitched {
 };
 
 inline Stitched stitch_volume(const LabelVolume& volume, double simplify_px, const StitchOptions& options = {}) {
-  Progress quiet;
+  Monitor quiet;
   ContourOptions contours;
   contours.simplify_px = simplify_px;
   contours.threads = options.threads;

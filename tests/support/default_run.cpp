@@ -7,7 +7,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/progress.h"
+#include "base/monitor.h"
 #include "pipeline/mesh_run.h"
 
 namespace stackmesh::testing_support {
@@ -52,19 +52,19 @@ class NrrdInMemory {
 DefaultRun run_at_defaults(const LabelVolume& volume, const std::string& worker) {
   const NrrdInMemory file(volume);
   MeshRunOptions o;  // as apps/stackmesh/mesh_command.cpp sets them
-  o.target = worker.empty() ? Target::surface : Target::volume;
+  o.mesh.target = worker.empty() ? Target::surface : Target::volume;
   o.command = worker.empty() ? "surface" : "mesh";
   o.input.paths = {file.path()};
-  o.threads = o.sections.contours.threads = 1;
-  o.enhance = true;
-  o.enhance_up_to = 10000000;
-  o.enhancement.usual_target = true;
-  o.fill.worker_path = worker;
-  o.fill.timeout_s = 60;
+  o.mesh.threads = o.mesh.sections.contours.threads = 1;
+  o.mesh.enhance = true;
+  o.mesh.enhance_up_to = 10000000;
+  o.mesh.enhancement.usual_target = true;
+  o.mesh.fill.worker_path = worker;
+  o.mesh.fill.timeout_s = 60;
   o.strict = true;  // a fallback or a lost component is an error
   DefaultRun out;
   const double start = thread_cpu_s();
-  Progress quiet;
+  Monitor quiet;
   try {
     out.report = run_mesh(o, quiet);
   } catch (const std::exception& e) {

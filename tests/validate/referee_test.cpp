@@ -59,7 +59,7 @@ class Referee : public ::testing::Test {
     return o;
   }
   static RunReport judged(const ValidateRunOptions& o) {
-    const auto progress = make_terminal_progress(ProgressMode::none);
+    const auto progress = make_terminal_monitor(ProgressMode::none);
     return run_validate(o, *progress)[0];
   }
   static RunReport judged(const InterfaceComplex& surface, const std::string& name) { return judged(options(write_mesh_file(name, surface))); }
@@ -343,7 +343,7 @@ TEST_F(Referee, MeshesSideBySideAndWithoutLabels) {
   for (Vec3& p : worse.points) p = p + Vec3{0.3, 0, 0};
   ValidateRunOptions o = options(folder() + "/good.vtp");
   o.meshes.push_back(write_mesh_file("worse.vtp", worse));
-  const auto progress = make_terminal_progress(ProgressMode::none);
+  const auto progress = make_terminal_monitor(ProgressMode::none);
   const std::vector<RunReport> reports = run_validate(o, *progress);
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_LT(reports[0].labels[0].distance_mm->mean, reports[1].labels[0].distance_mm->mean);
@@ -379,7 +379,7 @@ RunReport judge_perfect(const LabelVolume& volume, const InterfaceComplex& surfa
   o.meshes = {write_mesh_file(name + ".vtp", surface)};
   o.against.emplace();
   o.against->paths = {write_volume_file(name + ".nrrd", volume)};
-  const auto progress = make_terminal_progress(ProgressMode::none);
+  const auto progress = make_terminal_monitor(ProgressMode::none);
   return run_validate(o, *progress)[0];
 }
 

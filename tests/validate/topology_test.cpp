@@ -77,7 +77,7 @@ TEST(Topology, HolesOfAStitchedWallAreCountedAndFound) {
   std::vector<std::string> warnings;
   Stack stack = sections_from_contours({outer, inner}, warnings);
   const Stack drawn = stack;
-  Progress quiet;
+  Monitor quiet;
   StitchOptions options;
   options.caps = Caps::flat;
   const InterfaceComplex torn = stitch_sections(stack, options, quiet).complex;

@@ -1,4 +1,4 @@
-#include "base/progress.h"
+#include "base/monitor.h"
 
 #include <unistd.h>
 
@@ -12,9 +12,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// One line a stage; on a terminal the line is rewritten in place while the stage runs.
-class TerminalProgress : public Progress {
+class TerminalMonitor : public Monitor {
  public:
-  explicit TerminalProgress(bool live) : live_(live) {}
+  explicit TerminalMonitor(bool live) : live_(live) {}
   void begin(const std::string& stage) override {
     std::lock_guard<std::mutex> lock(mutex_);
     stage_ = stage;
@@ -50,11 +50,16 @@ class TerminalProgress : public Progress {
 
 }  // namespace
 
-std::unique_ptr<Progress> make_terminal_progress(ProgressMode mode) {
+Monitor& no_monitor() {
+  static Monitor silent;
+  return silent;
+}
+
+std::unique_ptr<Monitor> make_terminal_monitor(ProgressMode mode) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (mode == ProgressMode::none || (mode == ProgressMode::automatic && !terminal))
-    return std::make_unique<Progress>();
-  return std::make_unique<TerminalProgress>(mode == ProgressMode::automatic);
+    return std::make_unique<Monitor>();
+  return std::make_unique<TerminalMonitor>(mode == ProgressMode::automatic);
 }
 
 }  // namespace stackmesh

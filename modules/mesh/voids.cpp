@@ -1,4 +1,4 @@
-#include "pipeline/voids.h"
+#include "mesh/voids.h"
 
 #include "base/error.h"
 

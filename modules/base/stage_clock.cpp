@@ -1,4 +1,4 @@
-#include "pipeline/stage_clock.h"
+#include "base/stage_clock.h"
 
 #include <sys/resource.h>
 
@@ -16,6 +16,16 @@ double cpu_seconds() {
   return total;
 }
 }  // namespace
+
+void add_stage_time(std::vector<StageTime>& stages, const StageTime& time) {
+  const auto at = std::find_if(stages.begin(), stages.end(), [&](const StageTime& s) { return s.name == time.name; });
+  if (at == stages.end()) {
+    stages.push_back(time);
+    return;
+  }
+  at->wall_s += time.wall_s;
+  at->cpu_s += time.cpu_s;
+}
 
 std::size_t StageClock::stage(const std::string& name) {
   const std::size_t at = std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; }) - stages_.begin();

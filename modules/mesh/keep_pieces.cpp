@@ -1,4 +1,4 @@
-#include "pipeline/keep_pieces.h"
+#include "mesh/keep_pieces.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -3,16 +3,24 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "pipeline/beside.h"
-#include "report/run_report.h"
+#include "base/monitor.h"
+#include "base/beside.h"
 
 namespace stackmesh {
+
+/// What a stage took.
+struct StageTime {
+  std::string name;
+  double wall_s = 0, cpu_s = 0;
+};
+
+/// Adds to the time of the stage of that name, or appends it.
+void add_stage_time(std::vector<StageTime>& stages, const StageTime& time);
 
 /// Times the stages of a run and tells the progress display of them. A stage that runs again adds to its time.
 class StageClock {
  public:
-  StageClock(Progress& progress, std::vector<StageTime>& stages) : progress_(progress), stages_(stages) {}
+  StageClock(Monitor& progress, std::vector<StageTime>& stages) : progress_(progress), stages_(stages) {}
   template <class F>
   auto run(const std::string& name, F stage) {
     begin(name);
@@ -33,7 +41,7 @@ class StageClock {
   std::size_t stage(const std::string& name);
   void begin(const std::string& name);
   void end();
-  Progress& progress_;
+  Monitor& progress_;
   std::vector<StageTime>& stages_;
   std::chrono::steady_clock::time_point wall_;
   double cpu_s_ = 0;

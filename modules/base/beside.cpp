@@ -1,9 +1,11 @@
-#include "pipeline/beside.h"
+#include "base/beside.h"
 
 #include <pthread.h>
 #include <time.h>
 
 #include <utility>
+
+#include "base/cancel.h"
 
 namespace stackmesh {
 namespace {
@@ -22,7 +24,8 @@ void Beside::begin(std::function<void()> work, bool at_once) {
   work_ = std::move(work);
   if (!at_once) return;
   running_ = true;
-  thread_ = std::thread([this] {
+  thread_ = std::thread([this, monitor = cancelling_monitor()] {
+    const CancelScope scope(monitor);
     try {
       work_();
     } catch (...) {
