@@ -14,7 +14,6 @@
 #include "base/text.h"
 #include "commands.h"
 #include "slicer_module.h"
-#include "volume/tetgen_worker.h"
 
 namespace {
 
@@ -111,8 +110,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // The volume mesher runs in a worker process of this same program.
-  if (argc > 1 && std::strcmp(argv[1], "--tetgen-worker") == 0) return stackmesh::tetgen_worker_main();
   std::set_terminate(on_terminate);
   stackmesh::end_on_signals();
   stackmesh::set_memory_limit(0);

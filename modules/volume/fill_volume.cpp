@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <set>
@@ -48,9 +47,6 @@ void check_input(const InterfaceComplex& complex, const FillOptions& options) {
   positive(options.inner_growth, "inner growth");
   positive(options.improve_deg, "dihedral");
   if (std::isnan(options.timeout_s)) fail_usage("the time limit is not a number", "timeout", "give seconds");
-  if (std::getenv(worker::kGuardVariable))
-    fail_internal("the worker call reached fill_volume(): main() must hand it to tetgen_worker_main()",
-                  "fill_volume");
 }
 
 /// For tets with dihedral angles below it, points of the surface may move.

@@ -26,7 +26,7 @@ struct FillOptions {
   const std::atomic<bool>* given_up = nullptr;  ///< soon after it becomes true the filling ends, as timed_out; unset: never
   bool known_sound = false;            ///< the complex was shown to have no intersections: after a refusal TetGen
                                        ///< is not asked for them (that search is slow)
-  std::string worker_path;             ///< program that answers the worker call; empty: this very program
+  std::string worker_path;             ///< the program stackmesh-tetgen; empty: the environment's STACKMESH_WORKER, else beside this program or library, or where it was installed
   std::vector<std::string> worker_args = {"--tetgen-worker"};
 };
 

@@ -1,11 +1,8 @@
 #include "volume/label_tets.h"
 
-#include <tetgen.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -192,23 +189,6 @@ void add(Volume& volume, double term) {
 }
 
 }  // namespace
-
-int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 p = b - a, q = c - a, r = d - a;
-  const double det = dot(cross(p, q), r);
-  const double permanent = (std::abs(p.y * q.z) + std::abs(p.z * q.y)) * std::abs(r.x) +
-                           (std::abs(p.z * q.x) + std::abs(p.x * q.z)) * std::abs(r.y) +
-                           (std::abs(p.x * q.y) + std::abs(p.y * q.x)) * std::abs(r.z);
-  const double bound = 1e-15 * permanent + 1e-300;  // Shewchuk's is 7.8e-16
-  if (det > bound) return 1;
-  if (det < -bound) return -1;
-  static std::once_flag ready;  // no static filter: what is set is the same for all inputs
-  std::call_once(ready, [] { exactinit(0, 0, 1, 1, 1, 1); });
-  std::array<std::array<double, 3>, 4> v = {
-      {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}, {d.x, d.y, d.z}}};
-  const double below = orient3d(v[0].data(), v[1].data(), v[2].data(), v[3].data());
-  return below < 0 ? 1 : below > 0 ? -1 : 0;
-}
 
 Finding check_closed(const InterfaceComplex& complex) {
   Finding finding;

@@ -16,6 +16,7 @@
 
 #include "base/cancel.h"
 #include "base/error.h"
+#include "volume/find_worker.h"
 #include "volume/worker_protocol.h"
 
 extern char** environ;
@@ -59,7 +60,8 @@ class Child {
 
   // 0, or the errno of the failure.
   int start(const Program& program, int channel) {
-    const std::string path = program.path.empty() ? "/proc/self/exe" : program.path;
+    const std::string path = program.path.empty() ? find_worker() : program.path;
+    if (path.empty()) return ENOENT;
     std::vector<char*> argv{const_cast<char*>(path.c_str())};
     for (const std::string& arg : program.args) argv.push_back(const_cast<char*>(arg.c_str()));
     argv.push_back(nullptr);
@@ -285,7 +287,7 @@ Reply run(const Program& program, const Request& request, Clock::time_point dead
   File theirs(lifted(ends[1]));
 
   Child child;
-  const std::string name = program.path.empty() ? "this program" : program.path;
+  const std::string name = program.path.empty() ? "stackmesh-tetgen" : program.path;
   if (const int error = child.start(program, theirs.get()); error != 0) {
     reply.kind = Reply::Kind::not_a_worker;
     reply.text = "the worker " + name + " could not be started: " + std::strerror(error);

@@ -12,7 +12,7 @@ namespace stackmesh::worker {
 using Clock = std::chrono::steady_clock;
 
 struct Program {
-  std::string path;  // empty: this very program
+  std::string path;  // empty: find_worker()
   std::vector<std::string> args;
 };
 

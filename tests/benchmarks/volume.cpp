@@ -9,7 +9,6 @@
 #include "validate/check_volume.h"
 #include "volume/fill_volume.h"
 #include "volume/raise_order.h"
-#include "volume/tetgen_worker.h"
 
 namespace {
 
@@ -87,9 +86,4 @@ BENCHMARK(BM_CheckVolume)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->UseRea
 
 }  // namespace
 
-// Filling starts this program again as its worker.
-int main(int argc, char** argv) {
-  if (argc > 1 && std::strcmp(argv[1], "--tetgen-worker") == 0) return stackmesh::tetgen_worker_main();
-  benchmark::Initialize(&argc, argv);
-  benchmark::RunSpecifiedBenchmarks();
-}
+BENCHMARK_MAIN();

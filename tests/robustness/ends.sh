@@ -88,7 +88,7 @@ if [[ $kills -gt 0 ]]; then
     rm -rf "$work/k"
   done
   sleep 1
-  pgrep -f "^$program --tetgen-worker" >/dev/null && pgrep -P 1 -f "^$program --tetgen-worker" >/dev/null && finding "a worker outlives its parent"
+  pgrep -P 1 -f "stackmesh-tetgen --tetgen-worker" >/dev/null && finding "a worker outlives its parent"
   echo "kills: $kills at random instants of a run of $took_ms ms, every other one from the first byte written on: $none left nothing, $whole all 6 outputs, $some some outputs, each whole; $((findings - before)) findings"
 fi
 

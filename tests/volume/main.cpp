@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-#include "volume/tetgen_worker.h"
+#include "volume/worker/tetgen_worker.h"
 #include "volume/worker_protocol.h"
 
 namespace {
@@ -38,7 +38,6 @@ int picky_worker(const std::string& wanted) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc > 1 && std::strcmp(argv[1], "--tetgen-worker") == 0) return stackmesh::tetgen_worker_main();
   if (argc > 2 && std::strcmp(argv[1], "--picky-worker") == 0) return picky_worker(argv[2]);
   ::testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

@@ -225,6 +225,7 @@ TEST(FillWorker, MissingWorkerIsNamed) {
 // Workers that die unless the switches contain the given text: every other way to call TetGen fails.
 FillOptions picky(const std::string& wanted, bool refine) {
   FillOptions options;
+  options.worker_path = "/proc/self/exe";
   options.worker_args = {"--picky-worker", wanted};
   if (refine) options.radius_edge = 1.4;
   return options;

@@ -1,4 +1,4 @@
-#include "volume/tetgen_worker.h"
+#include "volume/worker/tetgen_worker.h"
 
 #include <fcntl.h>
 #include <signal.h>
