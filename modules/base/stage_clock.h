@@ -5,17 +5,9 @@
 
 #include "base/monitor.h"
 #include "base/beside.h"
+#include "base/stage_time.h"
 
 namespace stackmesh {
-
-/// What a stage took.
-struct StageTime {
-  std::string name;
-  double wall_s = 0, cpu_s = 0;
-};
-
-/// Adds to the time of the stage of that name, or appends it.
-void add_stage_time(std::vector<StageTime>& stages, const StageTime& time);
 
 /// Times the stages of a run and tells the progress display of them. A stage that runs again adds to its time.
 class StageClock {

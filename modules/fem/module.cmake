@@ -1,5 +1,5 @@
 # A tetrahedral mesh to a solver model: sets, parts, skins, materials (constant or from intensities), a load case, contact.
-stackmesh_module(fem
+stackmesh_module(fem COMPONENT Io
   SOURCES label_table.cpp ordered_mesh.cpp boundary_faces.cpp boundary_patches.cpp name_sets.cpp selection.cpp split_parts.cpp
           element_quality.cpp material_law.cpp read_law.cpp inside_voxels.cpp map_modulus.cpp assign_materials.cpp load_case.cpp
           join_parts.cpp read_load_case.cpp read_label_model.cpp face_integral.cpp check_supports.cpp lay_fibres.cpp recover_stress.cpp estimate_error.cpp

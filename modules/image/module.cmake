@@ -12,7 +12,7 @@ foreach(target IN LISTS image_imported)
     set_target_properties(${target} PROPERTIES IMPORTED_GLOBAL TRUE)
   endif()
 endforeach()
-stackmesh_module(image
+stackmesh_module(image COMPONENT Io
   SOURCES read_labels.cpp read_image.cpp read_contours.cpp volume_file.cpp volume_header.cpp nrrd_header.cpp metaimage_header.cpp data_files.cpp voxel_data.cpp
           slices.cpp png_file.cpp tiff_file.cpp
           masks.cpp palette.cpp file_names.cpp dicom_dataset.cpp dicom_text.cpp dicom_nesting.cpp dicom_grid.cpp

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/monitor.h"
-#include "base/stage_clock.h"
+#include "base/stage_time.h"
 #include "enhance/enhance.h"
 #include "mesh/keep_pieces.h"
 #include "model/complex.h"

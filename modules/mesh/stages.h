@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stage_clock.h"
 #include "mesh/judge.h"
 #include "mesh/mesh.h"
 #include "mesh/voids.h"

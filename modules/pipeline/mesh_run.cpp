@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/stage_clock.h"
 #include "base/text.h"
 #include "mesh/voids.h"
 #include "pipeline/complete_report.h"

@@ -1,5 +1,5 @@
 # The only place that orders stages.
-stackmesh_module(pipeline
+stackmesh_module(pipeline COMPONENT Io
   SOURCES input.cpp mesh_run.cpp mesh_product.cpp fem_run.cpp provenance.cpp complete_report.cpp turn_as_a_whole.cpp
           validate_run.cpp output_files.cpp solve_with_calculix.cpp
   HEADERS input.h mesh_run.h mesh_product.h fem_run.h validate_run.h output_files.h

@@ -10,7 +10,7 @@ add_custom_command(OUTPUT ${page_cpp}
   COMMAND ${CMAKE_COMMAND} -D "OUT=${page_cpp}" -D "NAMES=${page_names}" -D "FILES=${page_paths}" -P ${CMAKE_CURRENT_SOURCE_DIR}/report/page/embed.cmake
   DEPENDS ${page_paths} ${CMAKE_CURRENT_SOURCE_DIR}/report/page/embed.cmake
   COMMENT "Embedding the report page" VERBATIM)
-stackmesh_module(report
+stackmesh_module(report COMPONENT Io
   SOURCES run_report.cpp comparison.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
           histograms.cpp worst_places.cpp label_colours.cpp packed.cpp surface_values.cpp
   HEADERS run_report.h comparison.h html_report.h surface_values.h

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/stage_clock.h"
+#include "base/stage_time.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/estimate_error.h"

@@ -57,7 +57,7 @@ std::string broken(const InterfaceComplex& before, const EnhanceResult& after) {
              " pieces; ";
     if (a.euler != b.euler) out += name + " changed its genus; ";
     if (std::abs(b.volume_mm3 / a.volume_mm3 - 1) > 0.05 && !is_named(after.warnings, a.label) &&
-        after.level == "enhanced")
+        after.level == SurfaceLevel::enhanced)
       out += name + " changed its volume by " + std::to_string(b.volume_mm3 / a.volume_mm3 - 1) +
              " without a warning; ";
   }
@@ -76,8 +76,8 @@ TEST(EnhanceComplex, KeepsRandomStacksClosedAndFreeOfIntersections) {
     if (seed % 3 == 1) o.edge_length_mm = 2 * o.pixel_mm;
     if (seed % 3 == 2) o.edge_length_mm = 0.7 * o.pixel_mm;
     const EnhanceResult r = enhance(s.complex(), o);
-    EXPECT_EQ(broken(s.complex(), r), "") << "seed " << seed << ", level " << r.level;
-    enhanced += r.level == "enhanced";
+    EXPECT_EQ(broken(s.complex(), r), "") << "seed " << seed << ", level " << to_text(r.level);
+    enhanced += r.level == SurfaceLevel::enhanced;
   }
   EXPECT_GE(enhanced + 1 + count / 100, count);
 }

@@ -76,7 +76,7 @@ TEST(EnhanceMending, ANeedleAlongTheRimOfACapJoinsTheRim) {
   ASSERT_LT(check_surface(c).angle_min_deg, 0.2);
   const EnhanceResult r = enhance(c, 2);
   const SurfaceCheck check = check_surface(r.complex);
-  EXPECT_EQ(r.level, "enhanced");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   EXPECT_GT(check.angle_min_deg, 22);
   EXPECT_EQ(check.self_intersections, 0u);
   EXPECT_NEAR(surface_of(check, 1).volume_mm3, 1000, 5);
@@ -101,7 +101,7 @@ TEST(EnhanceMending, AFoldIsTakenOut) {
   ASSERT_GT(largest_bend_deg(c), 160);
   const EnhanceResult r = enhance(c, 1);
   const SurfaceCheck check = check_surface(r.complex);
-  EXPECT_EQ(r.level, "enhanced");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   EXPECT_EQ(check.self_intersections, 0u);
   EXPECT_LT(largest_bend_deg(r.complex), 130);  // the cube's own edges bend by 90
   EXPECT_GT(check.angle_min_deg, 15);
@@ -131,7 +131,7 @@ TEST(EnhanceMending, FacesLongerThanABlockAreSplit) {
   ASSERT_GT(drum.points.size(), 16000u);
   ASSERT_GT(longest_edge(drum), 60);
   const EnhanceResult r = enhance(drum, 0.9, 0.5);
-  EXPECT_EQ(r.level, "enhanced");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   EXPECT_LT(longest_edge(r.complex), 2);
   EXPECT_GT(check_surface(r.complex).angle_min_deg, 20);
 }
