@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "fem/boundary_patches.h"
-#include "fem/label_table.h"
+#include "fem/solver_names.h"
 #include "fem/ordered_mesh.h"
 #include "fem/selection.h"
 #include "fem/split_parts.h"

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/text.h"
-#include "fem/label_table.h"
+#include "fem/solver_names.h"
 
 namespace stackmesh {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/dicom_dataset.h"
+#include "model/label_table.h"
 #include "model/label_volume.h"
 
 namespace stackmesh {
@@ -41,9 +42,7 @@ class StructureSetReader {
 
   StructureSet run() {
     read_structures();
-    std::vector<LabelInfo> known = {{0, ""}};
-    for (const LabelContours& s : set_.structures) known.push_back({s.label, s.name});
-    for (std::size_t k : labels_in_order(known, labels_)) chosen_.push_back(k - 1);
+    chosen_ = LabelTable(set_.structures).in_order(labels_);
     read_contours();
     find_planes();
     for (RawContour& c : contours_) place(c);

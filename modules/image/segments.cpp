@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "model/label_table.h"
 
 namespace stackmesh {
 namespace {
@@ -30,9 +31,7 @@ class Joiner {
       : segments_(segments), layers_(layers), path_(path), volume_(volume), by_name_(!labels.empty()) {
     if (segments.size() > kMaxSegments)
       fail_input("the file holds " + std::to_string(segments.size()) + " segments", path, "keep at most 1000 segments");
-    std::vector<LabelInfo> known = {{0, ""}};
-    known.insert(known.end(), segments.begin(), segments.end());
-    for (std::size_t k : labels_in_order(known, labels)) asked_.push_back(k - 1);
+    asked_ = LabelTable(segments).in_order(labels);
     is_asked_.assign(segments.size(), false);
     for (std::size_t k : asked_) is_asked_[k] = true;
   }

@@ -56,12 +56,4 @@ std::vector<std::size_t> count_voxels(const LabelVolume& volume);
 /// ones become one label, numbered as the smallest.
 LabelVolume select_labels(LabelVolume volume, const std::vector<std::size_t>& keep, bool merge);
 
-/// Resolves a user's selection such as "1,4,7-9,femur_left" to indices of `labels` (0 excluded), ascending.
-/// A name may be typed with '_' for a blank or another sign: Lt_Lung for "Lt Lung".
-/// An empty text selects all. @param option where the text was given, for an error. @throws Error(usage) for a malformed text, Error(input) for an absent label.
-std::vector<std::size_t> resolve_labels(const std::vector<LabelInfo>& labels, const std::string& text, const std::string& option = "--label");
-
-/// The same, in the order in which the text names them: the priority of labels that overlap.
-std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, const std::string& text, const std::string& option = "--label");
-
 }  // namespace stackmesh

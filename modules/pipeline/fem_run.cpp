@@ -13,7 +13,9 @@
 #include "fem/element_quality.h"
 #include "fem/estimate_error.h"
 #include "fem/join_parts.h"
-#include "fem/label_table.h"
+#include "fem/solver_names.h"
+#include "image/read_label_table.h"
+#include "model/label_table.h"
 #include "fem/load_case.h"
 #include "fem/recover_stress.h"
 #include "fem/selection.h"
@@ -82,10 +84,9 @@ class FemRun {
   /// What names labels is checked as soon as they are known: a mistake is told before anything is meshed.
   void check_labels(const std::vector<LabelInfo>& labels) const {
     if (plan_) check_plan(*plan_, solver_names(labels), image_.has_value());
-    std::vector<LabelInfo> known = {{0, ""}};
-    known.insert(known.end(), labels.begin(), labels.end());
-    for (const auto& [name, text] : o_.parts) resolve_labels(known, text, "--parts");
-    for (const auto& [text, thickness] : o_.skins) resolve_labels(known, text, "--skin");
+    const LabelTable known(labels);
+    for (const auto& [name, text] : o_.parts) known.resolve(text, "--parts");
+    for (const auto& [text, thickness] : o_.skins) known.resolve(text, "--skin");
     for (const std::string& text : o_.selections) check_selection(text, solver_names(labels));
   }
 
@@ -211,13 +212,11 @@ class FemRun {
   /// --label and --merge.
   void keep_labels(MeshProduct& product) const {
     if (o_.mesh.input.labels.empty() && !o_.mesh.input.merge) return;
-    std::vector<LabelInfo> known = {{0, ""}};
-    known.insert(known.end(), product.labels.begin(), product.labels.end());
     std::set<Label> keep;
     std::vector<LabelInfo> kept;
-    for (const std::size_t k : resolve_labels(known, o_.mesh.input.labels)) {
-      keep.insert(known[k].number);
-      if (kept.empty() || !o_.mesh.input.merge) kept.push_back(known[k]);
+    for (const std::size_t k : LabelTable(product.labels).resolve(o_.mesh.input.labels)) {
+      keep.insert(product.labels[k].number);
+      if (kept.empty() || !o_.mesh.input.merge) kept.push_back(product.labels[k]);
     }
     TetMesh& m = product.mesh;
     std::size_t to = 0;
@@ -381,14 +380,10 @@ class FemRun {
     sets.sharp_deg = o_.sharp_deg;
     sets.selections = o_.selections;
     sets.ras = ras;
-    std::vector<LabelInfo> known = {{0, ""}};
-    known.insert(known.end(), product.labels.begin(), product.labels.end());
-    for (const auto& [name, text] : o_.parts) {
-      sets.parts.push_back({name, {}});
-      for (const std::size_t k : resolve_labels(known, text)) sets.parts.back().second.push_back(known[k].number);
-    }
+    const LabelTable known(product.labels);
+    for (const auto& [name, text] : o_.parts) sets.parts.push_back({name, known.numbers(text)});
     for (const auto& [text, thickness] : o_.skins)
-      for (const std::size_t k : resolve_labels(known, text)) sets.skins.push_back({known[k].number, thickness});
+      for (const Label l : known.numbers(text)) sets.skins.push_back({l, thickness});
     out.model = name_sets(product.mesh, product.labels, sets);
     SolverModel& model = out.model;
 

@@ -6,11 +6,12 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "fair/true_grid.h"
-#include "fem/label_table.h"
 #include "image/dicom_series.h"
 #include "image/read_contours.h"
+#include "image/read_label_table.h"
 #include "image/read_labels.h"
 #include "image/read_structure_set.h"
+#include "model/label_table.h"
 #include "sections/polygons.h"
 
 namespace stackmesh {
@@ -19,10 +20,7 @@ namespace {
 /// How the drawn labels are to end.
 void choose_caps(const InputOptions& options, Input& input) {
   input.drawn.caps = options.caps;
-  std::vector<LabelInfo> known = {{0, ""}};
-  for (const LabelContours& f : input.contours) known.push_back({f.label, f.name});
-  for (const auto& [text, caps] : options.label_caps)
-    for (std::size_t k : resolve_labels(known, text, "--caps")) input.drawn.label_caps[known[k].number] = caps;
+  input.drawn.label_caps = LabelTable(input.contours).values(options.label_caps, "--caps");
 }
 
 /// The labels that contours are drawn of, ascending.
@@ -56,11 +54,8 @@ void read_contours(const InputOptions& options, Input& input) {
     f.label = next++;
   }
   if (!options.labels.empty()) {
-    std::vector<LabelInfo> known = {{0, ""}};
-    for (const LabelContours& f : files) known.push_back({f.label, f.name});
-    const std::vector<std::size_t> keep = resolve_labels(known, options.labels);
     std::vector<LabelContours> chosen;
-    for (std::size_t k : keep) chosen.push_back(files[k - 1]);
+    for (std::size_t k : LabelTable(files).resolve(options.labels)) chosen.push_back(files[k]);
     files = std::move(chosen);
   }
   input.kind = "contours";
@@ -95,7 +90,8 @@ void read_volume(const InputOptions& options, Input& input) {
   input.kind = volume.kind;
   input.warnings = volume.warnings;
   if (!options.names.empty()) apply_label_table(read_label_table(options.names), volume.labels);
-  const std::vector<std::size_t> keep = resolve_labels(volume.labels, options.labels);
+  std::vector<std::size_t> keep = LabelTable(volume).resolve(options.labels);
+  for (std::size_t& k : keep) ++k;  // behind the background
   if (options.merge || keep.size() + 1 < volume.labels.size()) volume = select_labels(std::move(volume), keep, options.merge);
   input.labels.assign(volume.labels.begin() + 1, volume.labels.end());
   input.anatomical = volume.anatomical;
@@ -119,9 +115,7 @@ InputOptions with_voids(InputOptions options) {
 std::set<Label> resolve_voids(const std::string& text, const std::vector<LabelInfo>& labels) {
   std::set<Label> voids;
   if (text.empty()) return voids;
-  std::vector<LabelInfo> known = {{0, ""}};
-  known.insert(known.end(), labels.begin(), labels.end());
-  for (const std::size_t k : resolve_labels(known, text, "--void")) voids.insert(known[k].number);
+  for (const Label l : LabelTable(labels).numbers(text, "--void")) voids.insert(l);
   if (voids.size() == labels.size()) fail_usage("every label is a void: nothing is left to be filled", "--void " + text, "name the labels that only bound others");
   return voids;
 }

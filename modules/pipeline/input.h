@@ -25,7 +25,7 @@ struct InputOptions {
   bool merge = false;                               ///< selected labels become one
   Caps caps = Caps::automatic;                      ///< how drawn labels end: other labels go on beside them
   std::vector<std::pair<std::string, LabelEndCaps>> label_caps;  ///< by name or number
-  std::string names;                                ///< label table (fem/label_table.h) that names labels; empty: none
+  std::string names;                                ///< label table (image/read_label_table.h) that names labels; empty: none
 };
 
 /// The input as read: a volume, or contours and how they are to become sections.

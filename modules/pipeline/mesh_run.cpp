@@ -1,7 +1,6 @@
 #include "pipeline/mesh_run.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "base/error.h"
@@ -9,6 +8,7 @@
 #include "base/stage_clock.h"
 #include "base/text.h"
 #include "mesh/voids.h"
+#include "model/label_table.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
@@ -85,25 +85,15 @@ class MeshRun {
   /// --strict must know of a lost component, too.
   bool wants_fidelity() const { return !o_.reports.empty() || o_.strict; }
 
-  /// Of "5=2.0,9=1.0": labels by number or name.
-  template <class Value>
-  std::map<Label, Value> of_labels(const std::vector<std::pair<std::string, Value>>& texts, const std::string& option) const {
-    std::vector<LabelInfo> known = {{0, ""}};
-    known.insert(known.end(), input_.labels.begin(), input_.labels.end());
-    std::map<Label, Value> values;
-    for (const auto& [text, value] : texts)
-      for (std::size_t k : resolve_labels(known, text, option)) values[known[k].number] = value;
-    return values;
-  }
-
   MeshOptions mesh_options() const {
     MeshOptions m = o_.mesh;
     m.voids = input_.voids;
     m.input_name = input_.path;
     m.keep_judged = wants_fidelity();
-    m.stitch.label_caps = of_labels(o_.label_caps_text, "--caps");
-    m.enhancement.label_edge_mm = of_labels(o_.label_edges_text, "--edge-length");
-    m.fill.label_max_volume_mm3 = of_labels(o_.label_volumes_text, "--max-volume");
+    const LabelTable known(input_.labels);
+    m.stitch.label_caps = known.values(o_.label_caps_text, "--caps");
+    m.enhancement.label_edge_mm = known.values(o_.label_edges_text, "--edge-length");
+    m.fill.label_max_volume_mm3 = known.values(o_.label_volumes_text, "--max-volume");
     return m;
   }
 

@@ -5,6 +5,7 @@
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <unordered_map>
 
@@ -72,7 +73,9 @@ class Flood {
   Flood(Plane& plane, const Section& section, EdgeOf of, double sx, double sy)
       : plane_(plane), section_(section), of_(of), sx_(sx), sy_(sy) {}
 
+  /// @param near a place of the face, for an error
   void seed(FaceHandle face, Label label, GridPoint near) {
+    if (label != 0 && plane_.cdt.is_infinite(face)) fail_labels(section_, near, sx_, sy_);
     PlanarFace& info = face->info();
     if (info.known & of_) {
       if (label_of(info) != label) fail_labels(section_, near, sx_, sy_);
@@ -92,14 +95,21 @@ class Flood {
         if (!(face->info().edge[i] & of_)) {
           const FaceHandle next = face->neighbor(i);
           if ((next->info().known & of_) && label_of(next->info()) == label_of(face->info())) continue;
-          seed(next, label_of(face->info()), section_.points.empty() ? GridPoint{} : section_.points[0]);
+          seed(next, label_of(face->info()), place_of(face));
         }
     }
-    if (label_of(plane_.cdt.infinite_face()->info()) != 0)
-      fail_labels(section_, section_.points[0], sx_, sy_);
   }
 
  private:
+  /// A corner of the face, on the section's grid.
+  GridPoint place_of(FaceHandle face) const {
+    for (int i = 0; i < 3; ++i) {
+      if (plane_.cdt.is_infinite(face->vertex(i))) continue;
+      const PlanarPoint& p = face->vertex(i)->point();
+      return {static_cast<std::int32_t>(std::lround(p.x() / sx_)), static_cast<std::int32_t>(std::lround(p.y() / sy_))};
+    }
+    return {};
+  }
   Label& label_of(PlanarFace& info) { return of_ == kLower ? info.lower : info.upper; }
   Plane& plane_;
   const Section& section_;

@@ -1,6 +1,6 @@
 #pragma once
 // The plane under two sections: a constrained Delaunay triangulation whose triangles know the label beneath
-// and above. Internal to the module: the only header here that shows CGAL.
+// and above. For the modules `sections` and `stitch` alone: it is not installed, as it shows CGAL.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "model/label_table.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
 #include "random_stacks.h"
@@ -13,38 +14,53 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-const std::vector<LabelInfo> kLabels = {{0, ""},    {1, "heart"}, {4, "lung-2"}, {7, ""},
+const std::vector<LabelInfo> kLabels = {{1, "heart"}, {4, "lung-2"}, {7, ""},
                                         {8, "3-9"}, {9, "femur"}, {1000, "12"},  {70000, "femur"}};
 
+/// Counted from 1.
+Indices resolved(const std::string& text) {
+  Indices chosen = LabelTable(kLabels).resolve(text);
+  for (std::size_t& k : chosen) ++k;
+  return chosen;
+}
+
 TEST(ResolveLabels, TakesNumbersRangesAndNames) {
-  EXPECT_EQ(resolve_labels(kLabels, ""), (Indices{1, 2, 3, 4, 5, 6, 7}));
-  EXPECT_EQ(resolve_labels(kLabels, "4"), Indices{2});
-  EXPECT_EQ(resolve_labels(kLabels, "9,1"), (Indices{1, 5}));
-  EXPECT_EQ(resolve_labels(kLabels, "4,4,4"), Indices{2});
-  EXPECT_EQ(resolve_labels(kLabels, "7-9"), (Indices{3, 4, 5}));
-  EXPECT_EQ(resolve_labels(kLabels, "0-5"), (Indices{1, 2}));  // no background
-  EXPECT_EQ(resolve_labels(kLabels, "2-6,heart"), (Indices{1, 2}));
-  EXPECT_EQ(resolve_labels(kLabels, "70000"), Indices{7});
-  EXPECT_EQ(resolve_labels(kLabels, "007"), Indices{3});
-  EXPECT_EQ(resolve_labels(kLabels, "1,7-8,femur"), (Indices{1, 3, 4, 5, 7}));  // both of that name
+  EXPECT_EQ(resolved(""), (Indices{1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(resolved("4"), Indices{2});
+  EXPECT_EQ(resolved("9,1"), (Indices{1, 5}));
+  EXPECT_EQ(resolved("4,4,4"), Indices{2});
+  EXPECT_EQ(resolved("7-9"), (Indices{3, 4, 5}));
+  EXPECT_EQ(resolved("0-5"), (Indices{1, 2}));  // no background
+  EXPECT_EQ(resolved("2-6,heart"), (Indices{1, 2}));
+  EXPECT_EQ(resolved("70000"), Indices{7});
+  EXPECT_EQ(resolved("007"), Indices{3});
+  EXPECT_EQ(resolved("1,7-8,femur"), (Indices{1, 3, 4, 5, 7}));  // both of that name
 }
 
 TEST(ResolveLabels, ANameWinsOverANumberOrARange) {
-  EXPECT_EQ(resolve_labels(kLabels, "lung-2"), Indices{2});
-  EXPECT_EQ(resolve_labels(kLabels, "3-9"), Indices{4});
-  EXPECT_EQ(resolve_labels(kLabels, "12"), Indices{6});
-  EXPECT_EQ(resolve_labels(kLabels, "3-9,lung-2,heart,heart"), (Indices{1, 2, 4}));
+  EXPECT_EQ(resolved("lung-2"), Indices{2});
+  EXPECT_EQ(resolved("3-9"), Indices{4});
+  EXPECT_EQ(resolved("12"), Indices{6});
+  EXPECT_EQ(resolved("3-9,lung-2,heart,heart"), (Indices{1, 2, 4}));
 }
 
 ErrorKind refusal(const std::string& text, std::string* message = nullptr) {
   try {
-    resolve_labels(kLabels, text);
+    LabelTable(kLabels).resolve(text);
   } catch (const Error& e) {
     if (message != nullptr) *message = e.what();
     return e.kind();
   }
   ADD_FAILURE() << "accepted: " << text;
   return ErrorKind::internal;
+}
+
+TEST(ResolveLabels, GivesNumbersAndValuesByLabel) {
+  const LabelTable table(kLabels);
+  EXPECT_EQ(table.numbers("femur,1"), (std::vector<Label>{1, 9, 70000}));
+  EXPECT_EQ(table.in_order("femur,1"), (Indices{4, 6, 0}));
+  const std::map<Label, double> sizes = table.values<double>({{"7-9", 2.5}, {"9", 1.0}}, "--edge-length");
+  EXPECT_EQ(sizes, (std::map<Label, double>{{7, 2.5}, {8, 2.5}, {9, 1.0}}));
 }
 
 TEST(ResolveLabels, RefusesWhatIsAbsent) {

@@ -152,6 +152,20 @@ TEST_F(Validate, AgainstContourFilesFidelityIsNull) {
   EXPECT_EQ(r["input"]["kind"], "contours");
 }
 
+TEST_F(Validate, AgainstDrawnStructuresTheMeshLiesInTheirAnatomicalFrame) {
+  const std::string drawn = program::testdata("drawn/rt_gap.dcm"), mesh = in("drawn.vtu"), turned = in("turned.vtu");
+  program::stackmesh({"mesh", drawn, "-o", mesh, "--quiet"});
+  program::stackmesh({"mesh", drawn, "--space", "ras", "-o", turned, "--quiet"});
+  for (const auto& [file, space] : {std::pair{mesh, "lps"}, std::pair{turned, "ras"}}) {
+    const program::Ended ended = program::stackmesh({"validate", file, "--against", drawn, "--mesh-space", space, "--report", out("R.json")});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const Json r = report();
+    EXPECT_EQ(r["input"]["space"], "lps");
+    EXPECT_EQ(r["mesh"]["space"], space);
+    for (const Json& d : r["defects"]) EXPECT_FALSE(d["section"].is_null()) << d.dump();
+  }
+}
+
 TEST_F(Validate, AloneItSaysThatFidelityIsNotJudged) {
   const program::Ended ended = program::stackmesh({"validate", meshed("a.vtp")});
   EXPECT_EQ(ended.code, 0) << ended.err;

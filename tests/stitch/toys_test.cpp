@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/error.h"
 #include "checks.h"
 #include "random_stacks.h"
 #include "sections/polygons.h"
@@ -55,6 +56,33 @@ TEST(StitchToys, FrustumFollowsItsWalls) {
   EXPECT_EQ(defects(r.complex), "");
   // Prismatoid: (A0 + 4 Am + A1) h / 6, less what the four corners' linear ruling loses (nothing: it is ruled by planes).
   EXPECT_NEAR(surface_of(check_surface(r.complex), 1).volume_mm3, (64 * 64 + 4 * 48 * 48 + 32 * 32) * 8 / 6.0, 1e-6);
+}
+
+TEST(StitchToys, LabelsThatContradictEachOtherAreReportedWhereTheyDo) {
+  Stack stack;
+  stack.labels = {{0, ""}, {1, ""}, {2, ""}};
+  for (const double z : {0.0, 2.0}) {
+    Section s;
+    s.z_mm = z;
+    const auto add_box = [&](std::int32_t x, Label inside, Label outside) {
+      const std::int32_t first = static_cast<std::int32_t>(s.points.size());
+      for (const GridPoint p : {GridPoint{x, 0}, GridPoint{x + 10, 0}, GridPoint{x + 10, 10}, GridPoint{x, 10}}) s.points.push_back(p);
+      for (std::int32_t i = 0; i < 4; ++i) s.edges.push_back({first + i, first + (i + 1) % 4, inside, outside});
+    };
+    add_box(0, 1, 0);
+    add_box(500, 1, z > 0 ? 2 : 0);  // outside of the second one lies label 2, and nothing bounds it
+    stack.sections.push_back(s);
+  }
+  Monitor quiet;
+  try {
+    stitch_sections(stack, {}, quiet);
+    FAIL() << "it was stitched";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::input);
+    EXPECT_NE(e.where().find("z = 2.0"), std::string::npos) << e.what();
+    EXPECT_TRUE(e.where().find("(500") != std::string::npos || e.where().find("(510") != std::string::npos || e.where().find("(10.0") != std::string::npos) << e.what();
+    EXPECT_EQ(e.where().find("(0.0"), std::string::npos) << "the section's first point says nothing: " << e.what();
+  }
 }
 
 TEST(StitchToys, NoGrooveUnderALabelThatCoversTwo) {

@@ -1,12 +1,10 @@
-#include "fem/label_table.h"
+#include "image/read_label_table.h"
 
-#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include "base/error.h"
-#include "base/text.h"
 
 namespace stackmesh {
 namespace {
@@ -78,29 +76,6 @@ void apply_label_table(const std::vector<LabelInfo>& table, std::vector<LabelInf
         label.name = row.name;
         if (row.colour) label.colour = row.colour;
       }
-}
-
-std::string sanitised_name(const std::string& text) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  std::string name = text;
-  for (char& c : name)
-    if (!letter(c) && !(c >= '0' && c <= '9')) c = '_';
-  return name.empty() || !letter(name[0]) ? "L_" + name : name;
-}
-
-std::vector<LabelInfo> solver_names(std::vector<LabelInfo> labels) {
-  constexpr std::size_t longest = 40;
-  std::set<std::string> taken = {"nall", "eall", "background"};
-  for (LabelInfo& label : labels) {
-    const std::string name =
-        (label.name.empty() ? "label_" + std::to_string(label.number) : sanitised_name(label.name)).substr(0, longest);
-    label.name = name;
-    for (int n = 2; !taken.insert(lower_case(label.name)).second; ++n) {
-      const std::string tail = "_" + std::to_string(n);
-      label.name = name.substr(0, longest - tail.size()) + tail;
-    }
-  }
-  return labels;
 }
 
 }  // namespace stackmesh
