@@ -78,7 +78,7 @@ class ComplexMesh {
   std::vector<std::array<std::int32_t, 2>> edges() const;
 
   /// True when `gone` may be merged into `kept` without changing the topology of any sheet or curve
-  /// (link condition; Dey, Edelsbrunner, Guha, Nekhayev 1999).
+  /// (link condition; \cite dey1999).
   bool can_collapse(std::int32_t gone, std::int32_t kept) const;
   /// The same for any two neighbours, fixed ones too, asked of the labels: the boundary of each (the outside's as well) is
   /// plain at both, and what holds both holds their edge, and no other common neighbours than the edge's two apexes.

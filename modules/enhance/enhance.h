@@ -58,7 +58,7 @@ struct EnhanceResult {
   std::vector<std::string> warnings;
 };
 
-/// Smooths and remeshes a stitched complex for simulation [Wang et al. 2005, section 4; docs/enhancement.md].
+/// Smooths and remeshes a stitched complex for simulation (\cite wang2005, section 4; docs/enhancement.md).
 /// Every label stays closed, none of its pieces is lost, its genus stays, and no two triangles meet beyond
 /// what they share: each change is tested exactly against the whole complex. Flat caps stay plane.
 /// @param stitched free of self-intersections, in stack coordinates (z is the stacking axis), mm.

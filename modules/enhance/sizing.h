@@ -39,7 +39,7 @@ struct ShellCount {
 /// For every vertex the cube root of the volume of the smallest closed shell of a label that it is on, mm.
 std::vector<double> shell_sizes(const ComplexMesh& mesh, std::map<Label, ShellCount>* shells = nullptr);
 
-/// H-correction [Borouchaki, Hecht, Frey 1998]: sizes grow along the surface by at most the gradation.
+/// H-correction (\cite borouchaki1998): sizes grow along the surface by at most the gradation.
 void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>& size);
 
 /// Edge length asked for at every vertex, mm.

@@ -12,7 +12,7 @@ struct SmoothingOptions {
   int passes = 5;
   double alpha = 0.1,
          beta = 0.6;  ///< of HC-Laplacian smoothing: pull to the original, and share of the own correction
-  double taubin_lambda = 0, taubin_mu = 0;  ///< both set: low-pass smoothing instead [Taubin 1995]
+  double taubin_lambda = 0, taubin_mu = 0;  ///< both set: low-pass smoothing instead (\cite taubin1995)
   double limit_xy_mm = 0.5,
          limit_z_mm = 0.5;   ///< half axes of the ellipsoid about its origin that a vertex stays in
   std::vector<float> share;  ///< of the limits for each vertex; empty: all of them
@@ -30,7 +30,7 @@ struct SmoothingResult {
 /// Places of the vertices when smoothed, within the limits but without any guard.
 std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOptions& options);
 
-/// HC-Laplacian smoothing of a complex [Vollmer, Mencl, Mueller 1999]: vertices of curves average along their
+/// HC-Laplacian smoothing of a complex (\cite vollmer1999): vertices of curves average along their
 /// curve only, fixed points stay, caps stay plane. All moves are tried at once; vertices of triangles that
 /// then offend (see guard.h) go half of their way, and so on, so that the result is as valid as the input
 /// was.

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kRun = 4096;  // vertices that are summed in order, whatever the number of threads
 
-/// Minimises |L x|^2 (or |L L x|^2) over the boxes by accelerated projected gradients [Nesterov 1983; restarts of
-/// O'Donoghue and Candes 2015]. L is the difference of a vertex to the mean of the neighbours that it uses, weighted by one
+/// Minimises |L x|^2 (or |L L x|^2) over the boxes by accelerated projected gradients (\cite nesterov1983; restarts of
+/// \cite odonoghue2015). L is the difference of a vertex to the mean of the neighbours that it uses, weighted by one
 /// over their squared distance. The coordinates are independent of each other, so each is in voxels of its own axis.
 class Bender {
  public:

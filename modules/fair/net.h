@@ -21,9 +21,9 @@ inline bool operator==(const Cell& a, const Cell& b) { return a.x == b.x && a.y 
 /// Directions to neighbouring cells: -x, +x, -y, +y, -z, +z; d ^ 1 is the opposite one.
 constexpr int kDirections = 6;
 
-/// The surface net of all labels [Gibson 1998]: a vertex for every sheet that passes a cell, a quad across every edge between
+/// The surface net of all labels (\cite gibson1998): a vertex for every sheet that passes a cell, a quad across every edge between
 /// two voxel centres of different labels. Where voxels touch by a corner, the rule of docs/contours.md decides which sheets
-/// pass the cell; each has a vertex of its own, as in dual marching cubes [Nielson 2004]. Beyond the image's border its
+/// pass the cell; each has a vertex of its own, as in dual marching cubes (\cite nielson2004). Beyond the image's border its
 /// outermost voxels go on, so the net is open there.
 struct Net {
   std::array<double, 3> spacing_mm = {1, 1, 1};    ///< of the voxels, along the stack's axes

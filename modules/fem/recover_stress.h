@@ -12,7 +12,7 @@ struct SetStress {
   double mises_rms_mpa = 0;        ///< root of the mean square over its area
   double mises_max_mpa = 0;        ///< at corners
   double displacement_max_mm = 0;  ///< of its nodes
-  double zz_rel = 0;               ///< Zienkiewicz and Zhu: energy norm of (recovered - element's stress) over that of the stress, in the elements behind its faces
+  double zz_rel = 0;               ///< \cite zienkiewicz1987, energy norm of (recovered - element's stress) over that of the stress, in the elements behind its faces
   bool held = false;               ///< all of its nodes are held or moved by the first static step
 };
 struct StressMeasure {

@@ -99,7 +99,7 @@ class MeshRefused : public Error {
   std::shared_ptr<LabelMesh> partial;
 };
 
-/// Labels on a grid to a conforming mesh: sections, stitched [Wang et al. 2005, section 3], enhanced [section 4], filled and checked by code that shares nothing
+/// Labels on a grid to a conforming mesh: sections, stitched (\cite wang2005, section 3), enhanced (section 4), filled and checked by code that shares nothing
 /// with what made it. Every label is closed, and no two triangles meet but in what they share, as exact tests show.
 /// @throws Error(input) for a volume that is no valid one (check_label_volume) or has fewer than two slices along its stacking axis, Error(usage) for options that make
 /// no sense, MeshRefused (an Error(no_result)) where no valid mesh was found, Error(cancelled) where the monitor says so.

@@ -10,6 +10,8 @@ endforeach()
 install(TARGETS stackmesh_core EXPORT stackmeshCoreTargets)
 install(TARGETS stackmesh_io EXPORT stackmeshIoTargets)
 
+add_custom_target(reference COMMAND bash ${CMAKE_SOURCE_DIR}/tests/reference/run.sh ${CMAKE_BINARY_DIR} COMMENT "The reference of the public headers" VERBATIM)
+
 configure_file(package/version.h.in ${CMAKE_BINARY_DIR}/include/stackmesh/version.h)
 install(FILES package/mesh.h package/io.h ${CMAKE_BINARY_DIR}/include/stackmesh/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stackmesh)
 include(CMakePackageConfigHelpers)

@@ -20,12 +20,12 @@ struct NodedSegments {
   std::vector<NodedEdge> edges;
 };
 
-/// True hot-pixel snap rounding [Hobby 1999; Guibas and Marimont 1998] of every section together with its
+/// True hot-pixel snap rounding (\cite hobby1999, \cite guibas1998) of every section together with its
 /// two neighbours. Hot pixels are all end points and the pixels of all crossings; every segment is routed
 /// through the hot pixels of its own and both neighbouring sections that it traverses, and what it is routed
 /// through is hot for its neighbours in turn (a fixpoint over original segments, so nothing creeps).
 /// Segments are exact integers with |coordinates| <= 2^28. This replaces the paper's intersection points
-/// (3.2.1), snapping (3.2.1) and hanging-node repair (3.5) of [Wang et al. 2005].
+/// (3.2.1), snapping (3.2.1) and hanging-node repair (3.5) of \cite wang2005.
 std::vector<NodedSegments> node_segments(const std::vector<std::vector<GridSegment>>& sections, int threads);
 
 /// What rounding changed in a stack.

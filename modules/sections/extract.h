@@ -33,8 +33,8 @@ struct ContourResult {
 };
 
 /// Turns every slice into a section: the exact pixel-crack contours of all labels as shared arcs
-/// (cv::findContours [Suzuki and Abe 1985] on the doubled mask, docs/contours.md), simplified by
-/// cv::approxPolyDP [Douglas and Peucker 1973] so that every pixel centre keeps its label and no contours
+/// (cv::findContours \cite suzuki1985 on the doubled mask, docs/contours.md), simplified by
+/// cv::approxPolyDP \cite ramer1972 \cite douglas1973 so that every pixel centre keeps its label and no contours
 /// cross. With simplify_px == 0 each label's area in a section is its pixel count, exactly.
 /// @param faired where the corners of the contours lie; null: at the corners of the pixels
 /// @throws Error(input) for fewer than two slices along the axis or no label at all.

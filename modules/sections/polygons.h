@@ -25,7 +25,7 @@ struct ContourStackOptions {
 };
 
 /// Makes sections out of contour polygons: a constrained triangulation of each section's polygons, regions
-/// grown in it, and nesting by region [Wang et al. 2005, 3.1]; an edge walked twice (the bridge of a keyhole contour)
+/// grown in it, and nesting by region (\cite wang2005, 3.1); an edge walked twice (the bridge of a keyhole contour)
 /// counts as none; contours drawn twice, or nearly so, count once, with a warning (sections/contour_copies.h). A label ends half
 /// its own gap beyond its last contour (plane cuts: on it, or as a dome), whatever the heights of the others
 /// (sections/drawn_ends.h). Orientation of the input is free. The grid is a power of two mm, about 1e-5 of the box.

@@ -23,14 +23,14 @@ struct Mask {
 };
 
 /// For each pixel of `box` the distance (mm) to the mask's border, positive inside: exact between pixel
-/// centres (cv::distanceTransform, or [Felzenszwalb and Huttenlocher 2012] where pixels are not square), less
+/// centres (cv::distanceTransform, or \cite felzenszwalb2012 where pixels are not square), less
 /// half a pixel, so that the zero lies on the cracks. Pixels outside mask.box do not count, as unknown;
 /// distances are cut at limit_mm. `box` lies within mask.box.
 Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm,
                       double limit_mm);
 
 /// The same from exact contours: the sign is the mask's, the distance that to the nearest of the pieces (each
-/// pixel takes over its neighbours' nearest pieces in four sweeps, as in [Danielsson 1980]).
+/// pixel takes over its neighbours' nearest pieces in four sweeps, as in \cite danielsson1980).
 Field signed_distance(const Mask& mask, const std::vector<BorderPiece>& border, const Box& box,
                       const std::array<double, 2>& pixel_mm, double limit_mm);
 

@@ -23,7 +23,7 @@ struct InterpolatedVolume {
 int virtual_slices_per_gap(const LabelVolume& volume, int stacking_axis, const InterpolateOptions& options);
 
 /// Puts virtual slices between the slices along an axis (0 x, 1 y, 2 z), so that walls bend smoothly across
-/// slices [Raya and Udupa 1990, raya1990; docs/interpolate.md]: per connected part of a label the signed
+/// slices (\cite raya1990; docs/interpolate.md): per connected part of a label the signed
 /// distance to its border in each slice, a cardinal spline over four slices, the largest wins. The
 /// 6-connected components of the labels are exactly those of the input: none is lost, joined, split or added.
 /// The order of the labels' numbers plays no part but in exact ties of labels that neither neighbouring slice

@@ -47,7 +47,7 @@ struct SlabSurface {
   std::size_t added_points = 0;  ///< points of the plane that neither section has
 };
 
-/// Stitches one slab [Wang et al. 2005, sections 3.2 to 3.4; docs/stitching.md]: one constrained Delaunay
+/// Stitches one slab (\cite wang2005, sections 3.2 to 3.4; docs/stitching.md): one constrained Delaunay
 /// triangulation of both sections, labels (l, u) per triangle by flooding, a sheet over every triangle with
 /// l != u, walls where neighbouring columns differ.
 /// @throws Error(input) where the labels of a section's edges contradict each other.

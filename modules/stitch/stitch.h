@@ -40,7 +40,7 @@ struct StitchResult {
 };
 
 /// Stitches a stack of sections into the closed complex of all label interfaces
-/// [Wang et al. 2005, section 3; docs/stitching.md]. The sections are snap-rounded first. Closed and
+/// (\cite wang2005, section 3; docs/stitching.md). The sections are snap-rounded first. Closed and
 /// free of self-intersections for every stack whose sections are partitions of the plane.
 /// @throws Error(input) naming section and place where a section is no partition, Error(no_result) when the
 /// stack holds no label.

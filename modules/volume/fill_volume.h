@@ -54,7 +54,7 @@ struct FillResult {
 };
 
 /// Fills every label of a closed complex with tetrahedra that keep all of its triangles; the background is
-/// left out. TetGen (Si 2015) does it in a worker process with a timeout, boundary preserved (-pY). What
+/// left out. TetGen (\cite si2015) does it in a worker process with a timeout, boundary preserved (-pY). What
 /// comes back is improved if that is asked for, and then checked: each tet's label is flooded from the facets' (below, above), and the volumes
 /// per label compared.
 ///

@@ -7,7 +7,7 @@
 
 namespace stackmesh::volume {
 
-/// The changes that may mend a tet. Each is made only if the worst tet afterwards is better than the worst of those
+/// The changes that may mend a tet (\cite freitag1997, \cite klingner2007). Each is made only if the worst tet afterwards is better than the worst of those
 /// it replaces, so that a mesh never gets worse; unless it is shaken.
 class ImproveMoves {
  public:

@@ -5,7 +5,7 @@
 
 namespace stackmesh {
 
-/// How mid-side nodes are placed.
+/// How mid-side nodes are placed, and how valid the elements stay \cite johnen2013 .
 struct OrderOptions {
   bool follow_surface = true;  ///< nodes on curved interfaces leave the straight edge for the smooth surface
   bool volumes_restored = false;  ///< the flat triangles hold the right volume, so their corners stand off the true surface (the

@@ -11,6 +11,13 @@ if grep -rn "$work/first\|/usr/lib\|/usr/include" "$work/installed"/lib*/cmake/s
   echo "run.sh: error: the export holds absolute paths" >&2
   exit 1
 fi
+# The page shows these very programs.
+for example in labels drawn; do
+  python3 - "$here/$example.cpp" "$here/../../docs/library.md" <<'PY' || exit 1
+import sys
+if open(sys.argv[1]).read() not in open(sys.argv[2]).read(): sys.exit(f"run.sh: error: docs/library.md does not show {sys.argv[1]}")
+PY
+done
 # Neither ITK nor DCMTK is touched by component core.
 cmake -S "$here" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/installed" \
   -DCMAKE_DISABLE_FIND_PACKAGE_ITK=ON -DCMAKE_DISABLE_FIND_PACKAGE_DCMTK=ON >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
