@@ -26,8 +26,8 @@ struct SizingOptions {
 /// rings, so that what is left of the voxels' steps does not count.
 std::vector<double> surface_bends(const ComplexMesh& mesh, int threads);
 
-/// For every vertex the distance across the thinnest label or gap between sheets of a label there, by rays
-/// from both sides; no more than reach_mm, infinite where nothing is hit.
+/// For every vertex the distance across the thinnest label there, by rays into the labels on both sides (gaps of background do not count); no more than
+/// reach_mm, infinite where nothing is hit and on curves.
 std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int threads);
 
 /// The closed shells of a label: outer ones, and those round holes in it, which face inwards.

@@ -32,9 +32,13 @@ void stays_sound(const std::vector<std::vector<const char*>>& slices) {
   for (double edge : {0.6, 1.0, 3.0}) {
     EnhanceOptions o;
     o.edge_length_mm = edge;
-    EXPECT_EQ(changed(s.complex(), enhance(s.complex(), o).complex), "") << edge;
+    const EnhanceResult r = enhance(s.complex(), o);
+    EXPECT_EQ(changed(s.complex(), r.complex), "") << edge;
+    EXPECT_EQ(r.level, SurfaceLevel::enhanced) << edge;
   }
-  EXPECT_EQ(changed(s.complex(), enhance(s.complex(), EnhanceOptions()).complex), "") << "by curvature";
+  const EnhanceResult r = enhance(s.complex(), EnhanceOptions());
+  EXPECT_EQ(changed(s.complex(), r.complex), "") << "by curvature";
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced) << "by curvature";
 }
 
 }  // namespace

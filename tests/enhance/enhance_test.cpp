@@ -145,6 +145,7 @@ TEST(EnhanceComplex, OneVoxelStaysAsASmallClosedShape) {
     o.edge_length_mm = edge;
     const EnhanceResult r = enhance(s.complex(), o);
     EXPECT_EQ(broken(s.complex(), r), "") << edge;
+    EXPECT_EQ(r.level, SurfaceLevel::enhanced) << edge;
     EXPECT_GT(surface_of(check_surface(r.complex), 1).volume_mm3,
               0.7 * surface_of(check_surface(s.complex()), 1).volume_mm3)
         << edge;
@@ -161,6 +162,7 @@ TEST(EnhanceComplex, TouchingLabelsStayConforming) {
     o.edge_length_mm = edge;
     const EnhanceResult r = enhance(s.complex(), o);
     EXPECT_EQ(broken(s.complex(), r), "");
+    EXPECT_EQ(r.level, SurfaceLevel::enhanced) << edge;
     EXPECT_GT(interface_area(r.complex, 1, 2), 0.5 * interface_area(s.complex(), 1, 2));
     EXPECT_GT(interface_area(r.complex, 2, 3), 0.5 * interface_area(s.complex(), 2, 3));
   }
@@ -172,6 +174,7 @@ TEST(EnhanceComplex, AThinGapIsNotClosed) {
   o.edge_length_mm = 2;
   const EnhanceResult r = enhance(c, o);
   EXPECT_EQ(broken(c, r), "");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
 }
 
 TEST(EnhanceComplex, FlatCapsStayPlane) {
@@ -197,6 +200,7 @@ TEST(EnhanceComplex, FlatCapsStayPlane) {
     return sum;
   };
   EXPECT_EQ(broken(s.complex(), r), "");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   EXPECT_GT(cap_area(s.complex(), low), 20);
   EXPECT_NEAR(cap_area(r.complex, low), cap_area(s.complex(), low), 0.08 * cap_area(s.complex(), low));
   EXPECT_NEAR(cap_area(r.complex, high), cap_area(s.complex(), high), 0.08 * cap_area(s.complex(), high));
@@ -209,6 +213,7 @@ TEST(EnhanceComplex, ACubeKeepsItsVolumeAndCorners) {
   o.edge_length_mm = 2;
   const EnhanceResult r = enhance(c, o);
   EXPECT_EQ(broken(c, r), "");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   const SurfaceCheck check = check_surface(r.complex);
   EXPECT_NEAR(surface_of(check, 1).volume_mm3, 1000, 10);
   EXPECT_GT(check.angle_min_deg, 20);
@@ -228,6 +233,7 @@ TEST(EnhanceComplex, ABallGetsGoodTrianglesOfTheSizeAskedFor) {
   o.edge_length_mm = 2;
   const EnhanceResult r = enhance(c, o);
   EXPECT_EQ(broken(c, r), "");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   const SurfaceCheck check = check_surface(r.complex);
   EXPECT_NEAR(surface_of(check, 1).volume_mm3 / surface_of(check_surface(c), 1).volume_mm3, 1, 0.005);
   EXPECT_GT(check.angle_min_deg, 28);
@@ -310,6 +316,7 @@ TEST(EnhanceComplex, LabelsGetTheirOwnEdgeLength) {
   o.label_edge_mm[2] = 0.8;
   const EnhanceResult r = enhance(c, o);
   EXPECT_EQ(broken(c, r), "");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   std::map<Label, int> count;
   for (const InterfaceTriangle& t : r.complex.triangles) ++count[std::max(t.below, t.above)];
   EXPECT_GT(count[2], 4 * count[1]);
@@ -359,5 +366,6 @@ TEST(EnhanceComplex, SaysSoWhenTheEdgeLengthIsTooLarge) {
   const InterfaceComplex c = ball(10, 3);
   const EnhanceResult r = enhance(c, o);
   EXPECT_EQ(broken(c, r), "");
+  EXPECT_EQ(r.level, SurfaceLevel::enhanced);
   EXPECT_TRUE(is_named(r.warnings, 1));
 }

@@ -24,7 +24,7 @@ TEST_F(ReportSchema, HoldsForEveryKindOfReport) {
   const std::string femur = program::testdata("femur.nii.gz"), names = program::testdata("femur_names.ctbl");
   ASSERT_EQ(program::stackmesh({"mesh", femur, "-o", out("a.vtu"), "--report", out("mesh.json"), "--quiet"}).code, 0);
   ASSERT_EQ(program::stackmesh({"surface", program::testdata("tube.cnt"), "-o", out("b.vtp"), "--report", out("contours.json"), "--quiet"}).code, 0);
-  ASSERT_EQ(program::stackmesh({"fem", femur, "--names", names, "--materials", program::testdata("femur_law.json"), "-o", out("c.inp"), "--report", out("fem.json"), "--quiet"}).code, 0);
+  ASSERT_EQ(program::stackmesh({"fem", femur, "--names", names, "--caps", "flat", "--materials", program::testdata("femur_law.json"), "-o", out("c.inp"), "--report", out("fem.json"), "--quiet"}).code, 0);
   program::stackmesh({"validate", out("a.vtu"), "--against", femur, "--report", out("validate.json")});
   program::stackmesh({"validate", out("a.vtu"), out("b.vtp"), "--report", out("several.json")});
   const std::vector<std::string> reports = {out("mesh.json"), out("contours.json"), out("fem.json"), out("validate.json"), out("several.json")};
