@@ -10,6 +10,7 @@ program=(
   libcgal-dev libtet1.5-dev libopenmesh-dev
   libinsighttoolkit5-dev libdcmtk-dev libtiff-dev
   libexodusii-dev libmedc-dev # .exo and .med; Debian builds both upon Open MPI, which comes along and is not used
+  libssl-dev # libcrypto, for digests
   libtbb-dev libcli11-dev nlohmann-json3-dev libpugixml-dev
   libjs-three libjs-chart.js # inside the HTML report
 )

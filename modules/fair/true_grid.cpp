@@ -163,14 +163,7 @@ std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads) {
     grid.stored_per_voxel[axis] = blocks.length;
   }
   if (!finer) return std::nullopt;
-  LabelVolume& out = grid.volume;
-  out.labels = volume.labels;
-  out.axes = volume.axes;
-  out.anatomical = volume.anatomical;
-  out.goes_on_low = volume.goes_on_low;
-  out.goes_on_high = volume.goes_on_high;
-  out.kind = volume.kind;
-  out.warnings = volume.warnings;
+  LabelVolume& out = grid.volume = without_voxels(volume);
   std::array<double, 3> first;  // centre of the first true voxel
   for (int axis = 0; axis < 3; ++axis) {
     out.size[axis] = static_cast<int>(planes[axis].plane.size());

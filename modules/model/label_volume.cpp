@@ -50,6 +50,21 @@ LabelVolume volume_of_labels(const std::vector<Label>& numbers, const std::array
   return v;
 }
 
+LabelVolume without_voxels(const LabelVolume& volume) {
+  LabelVolume out;
+  out.size = volume.size;
+  out.spacing_mm = volume.spacing_mm;
+  out.origin_mm = volume.origin_mm;
+  out.axes = volume.axes;
+  out.anatomical = volume.anatomical;
+  out.goes_on_low = volume.goes_on_low;
+  out.goes_on_high = volume.goes_on_high;
+  out.labels = volume.labels;
+  out.kind = volume.kind;
+  out.warnings = volume.warnings;
+  return out;
+}
+
 std::vector<std::size_t> count_voxels(const LabelVolume& volume) {
   std::vector<std::size_t> counts(volume.labels.size(), 0);
   for (std::uint16_t v : volume.voxels) ++counts[v];

@@ -49,6 +49,9 @@ void check_label_volume(const LabelVolume& volume, const std::string& name);
 /// @throws Error(input) for negative labels, for more than 65,535 of them, or where numbers and size do not match
 LabelVolume volume_of_labels(const std::vector<Label>& numbers, const std::array<int, 3>& size, const std::array<double, 3>& spacing_mm);
 
+/// The same labels, place and grid, without the voxels: what begins a volume on another grid.
+LabelVolume without_voxels(const LabelVolume& volume);
+
 /// Voxels of each entry of volume.labels.
 std::vector<std::size_t> count_voxels(const LabelVolume& volume);
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <numeric>
 #include <optional>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -241,16 +241,11 @@ bool compose(const Piece* first, const Piece* last, const Stack& stack, std::siz
 
 /// Contour components (connected sets of edges) of the original section, as an id per edge.
 std::vector<std::int32_t> edge_components(const Section& section) {
-  std::vector<std::int32_t> parent(section.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](std::int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const SectionEdge& e : section.edges) parent[find(e.a)] = find(e.b);
+  DisjointSets sets(section.points.size());
+  for (const SectionEdge& e : section.edges) sets.join(e.a, e.b);
   std::vector<std::int32_t> out;
   out.reserve(section.edges.size());
-  for (const SectionEdge& e : section.edges) out.push_back(find(e.a));
+  for (const SectionEdge& e : section.edges) out.push_back(sets.find(e.a));
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "sections/layer_sections.h"
 #include "sections/virtual_layers.h"
 #include "model/edge_grid.h"
@@ -105,18 +106,13 @@ namespace {
 /// Does any contour of the section lie within another one? Each label and each hole in it counts.
 bool has_nesting(const Section& s) {
   // A region's outline that touches no other one lies in something if that side of it is a label, or if it goes round a hole.
-  std::vector<std::int32_t> parent(s.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](std::int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const SectionEdge& e : s.edges) parent[find(e.a)] = find(e.b);
+  DisjointSets contours(s.points.size());
+  for (const SectionEdge& e : s.edges) contours.join(e.a, e.b);
   std::vector<double> twice(s.points.size(), 0);  // of a connected contour, with its label on the left
   for (const SectionEdge& e : s.edges) {
     if (e.left != 0 && e.right != 0) return true;  // labels that touch, or one in another
     const GridPoint a = s.points[e.a], b = s.points[e.b];
-    twice[find(e.a)] += (e.left != 0 ? 1.0 : -1.0) * (static_cast<double>(a.x) * b.y - static_cast<double>(b.x) * a.y);
+    twice[contours.find(e.a)] += (e.left != 0 ? 1.0 : -1.0) * (static_cast<double>(a.x) * b.y - static_cast<double>(b.x) * a.y);
   }
   return std::any_of(twice.begin(), twice.end(), [](double t) { return t < 0; });
 }

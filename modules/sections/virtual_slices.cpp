@@ -93,19 +93,9 @@ InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int axis,
     return result;
   }
   const int stride = result.per_gap + 1;
-  LabelVolume& out = result.volume;
-  out.size = volume.size;
+  LabelVolume& out = result.volume = without_voxels(volume);
   out.size[axis] = (from.count - 1) * stride + 1;
-  out.spacing_mm = volume.spacing_mm;
   out.spacing_mm[axis] /= stride;
-  out.origin_mm = volume.origin_mm;
-  out.axes = volume.axes;
-  out.anatomical = volume.anatomical;
-  out.goes_on_low = volume.goes_on_low;
-  out.goes_on_high = volume.goes_on_high;
-  out.labels = volume.labels;
-  out.kind = volume.kind;
-  out.warnings = volume.warnings;
   out.voxels.assign(static_cast<std::size_t>(out.size[0]) * out.size[1] * out.size[2], 0);
   const SliceView to(out, axis);
 
