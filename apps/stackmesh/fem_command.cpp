@@ -123,7 +123,7 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
   }
   if (f.accuracy) {
     const Accuracy& e = f.accuracy->estimate;
-    std::printf("accuracy  %.3g %% (asked for %.3g %%), in set %s; energy error by Zienkiewicz and Zhu %.3g %%; solved with", 100 * e.error_rel, 100 * f.accuracy->asked_rel,
+    std::printf("accuracy  %.3g %% (requested %.3g %%), in set %s; energy error by Zienkiewicz and Zhu %.3g %%; solved with", 100 * e.error_rel, 100 * f.accuracy->asked_rel,
                 printable(e.worst_set).c_str(), 100 * e.zz_rel.back());
     for (std::size_t i = 0; i < f.accuracy->elements.size(); ++i) std::printf("%s %zu", i > 0 ? "," : "", f.accuracy->elements[i]);
     std::printf(" elements\n");

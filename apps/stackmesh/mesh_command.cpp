@@ -91,7 +91,7 @@ std::string text_of(double value) {
   return buffer;
 }
 
-/// What was asked for, or the default: more passes for a wider band, whose labels jitter from slice to slice.
+/// What was requested, or the default: more passes for a wider band, whose labels jitter from slice to slice.
 int smoothing_passes(const CLI::App& command, int asked, double band_px) {
   constexpr double kForEachPixel = 20;  // measured on jittering slices (docs/fidelity.md)
   if (command.get_option("--smooth")->count() > 0) return asked;
@@ -151,7 +151,7 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (e.edge_max > 0) o.mesh.enhancement.edge_max_mm = e.edge_max;
   o.mesh.enhancement.gradation = e.gradation;
   o.mesh.enhancement.smooth_passes = smoothing_passes(command, e.smooth, o.mesh.sections.band_px);
-  // The budget is for sizes that nobody asked for, or for whoever asks for it.
+  // The budget is for sizes that nobody requested, or for whoever asks for it.
   const bool budget_asked = command.get_option("--target-tets")->count() > 0;
   const bool sizes_asked = !e.edge_length.empty() || e.deviation > 0 || e.edge_min > 0 || e.edge_max > 0;
   if (budget_asked) o.mesh.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);

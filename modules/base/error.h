@@ -12,7 +12,7 @@ enum class ErrorKind {
   output = 5,     ///< the output cannot be written
   outside_limits = 6,  ///< `validate`: a valid mesh, but outside a limit
   internal = 70,  ///< a bug of ours
-  cancelled = 130  ///< the monitor of the run asked for its end
+  cancelled = 130  ///< the monitor of the run ended it
 };
 
 /// The one exception of the library. It carries what is wrong, where (file, section, label, entities) and

@@ -11,7 +11,7 @@ namespace stackmesh {
 struct MeshBlock {
   ComplexMesh mesh;
   std::vector<std::int32_t> vertices, triangles;  ///< the numbers in the whole of those it began with
-  std::vector<double> size;                       ///< edge length asked for at each vertex
+  std::vector<double> size;                       ///< edge length requested at each vertex
   std::vector<std::int32_t> hints;                ///< face of the reference for each vertex
 };
 

@@ -20,11 +20,11 @@ namespace {
 constexpr double kTriangleLimit = 50e6;
 // Measured: 1.9 tetrahedra a triangle in a thin skull, 3 to 4 in a heart, 9.5 in lungs with fine triangles.
 constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
-// Without any size asked for: tetrahedra of one label, for each further one, and at most.
+// Without any size requested: tetrahedra of one label, for each further one, and at most.
 constexpr std::size_t kUsualTets = 150000, kMoreTets = 50000, kMostTets = 1000000;
 // The edges that come out scatter about 0.95 of what the remesher aims at.
 constexpr double kAim = 1.05;
-// Of the deviation that was asked for: sizes are chosen for this share, so that few places reach the whole of it.
+// Of the deviation that was requested: sizes are chosen for this share, so that few places reach the whole of it.
 constexpr double kDeviationAim = 0.33;
 
 constexpr std::size_t kSamples = 20000;   // of the stitched surface, to tell its distance
@@ -33,7 +33,7 @@ constexpr double kSheetGap = 0.2;         // of the edge length: what sheets kee
 constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
 constexpr double kSettled = 0.01;         // pixels: vertices that near the faired surface stay where they are
 constexpr double kDrawnCorner_deg = 35;
-constexpr double kMuchShorter = 0.7, kMuchOfIt = 0.1;  // shares of the length asked for, and of the surface, from which on shorter edges are told
+constexpr double kMuchShorter = 0.7, kMuchOfIt = 0.1;  // shares of the length requested, and of the surface, from which on shorter edges are told
 constexpr double kDrawnBulges = 6, kDrawnDeviation_mm = 0.15;  // the default deviation of smooth drawn outlines: so many bulges, at least that
 constexpr double kLeastSmoothing = 1e-3;  // of the smoothing's limits, for outlines without any roughness
 constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
@@ -320,7 +320,7 @@ class Enhancement {
   }
 
   /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
-  /// Shorter ones only for a target that was asked for.
+  /// Shorter ones only for a target that was requested.
   /// @return the triangles that go with the target.
   double coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
     const std::size_t target = o_.target_tets.value_or(std::min(kMostTets, kUsualTets + kMoreTets * (volumes_.empty() ? 0 : volumes_.size() - 1)));
@@ -339,7 +339,7 @@ class Enhancement {
     return triangles;
   }
 
-  /// Says on how much of the surface edges are much shorter than asked for, and why.
+  /// Says on how much of the surface edges are much shorter than requested, and why.
   void say_where_shorter(const ComplexMesh& mesh, const std::vector<double>& size) {
     if (!o_.edge_length_mm) return;
     const double least = kMuchShorter * *o_.edge_length_mm;
@@ -360,13 +360,13 @@ class Enhancement {
     std::string why;
     for (const auto& [part, what] : {std::pair{walls, "where walls are thin"}, {pieces, "on small pieces"}, {bends, "where it bends"}})
       if (part > 0.005 * all) why += (why.empty() ? "" : ", ") + number(std::round(100 * part / all)) + " % " + what;
-    warn("edges are shorter than the " + number(*o_.edge_length_mm) + " mm asked for on " + number(std::round(100 * share)) + " % of the surface (" + why +
+    warn("edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " + number(std::round(100 * share)) + " % of the surface (" + why +
          "), as longer ones would cut off too much there");
   }
 
   void refuse_giants(double triangles) const {
     if (triangles > kTriangleLimit)
-      fail_usage("the edge lengths asked for mean about " + number(triangles / 1e6) +
+      fail_usage("the edge lengths requested mean about " + number(triangles / 1e6) +
                      " million triangles, more than the 50 million allowed",
                  o_.edge_length_mm ? "edge length " + number(*o_.edge_length_mm) + " mm" : "by curvature",
                  "ask for longer edges");
@@ -386,7 +386,7 @@ class Enhancement {
     const Reference& reference = *reference_;
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
-    // An edge length that was asked for gives way only where something would be cut off.
+    // An edge length that was requested gives way only where something would be cut off.
     r.deviation_mm = o_.edge_length_mm ? std::max(0.5 * o_.pixel_mm, 0.4 * *o_.edge_length_mm) : result_.coarsened * result_.coarsened * sizes.deviation_mm;
     r.shortest_mm = std::min(1.0, result_.coarsened) * sizes.edge_min_mm;
     r.gradation = o_.gradation;
@@ -412,7 +412,7 @@ class Enhancement {
 
   /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps. By default it
   /// may cost little distance: single steps go for that; of larger ones (of images with finer voxels than they were taken
-  /// with) only a light pass takes some. What is asked for beyond the default follows, whatever it costs, with limits of its own.
+  /// with) only a light pass takes some. What is requested beyond the default follows, whatever it costs, with limits of its own.
   void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     if (o_.smooth_passes == 0) return;
     SmoothingOptions s;

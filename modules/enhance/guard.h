@@ -74,7 +74,7 @@ class TriangleGrid {
   std::vector<float> clearance_;
 };
 
-/// A change that is asked for: triangles that go, corners of those that come, and one vertex at a new place
+/// A change that is requested: triangles that go, corners of those that come, and one vertex at a new place
 /// (moved == number of points: a new vertex).
 struct Change {
   const std::vector<std::int32_t>* removed = nullptr;
@@ -122,7 +122,7 @@ class Guard {
 /// What moves of many vertices at once must keep, each "not below, and not worse than before".
 struct MoveLimits {
   double clearance_mm = 0;      ///< between triangles without a common corner
-  const std::vector<double>* size_mm = nullptr;  ///< and, if given, this share of the smallest edge length asked for at
+  const std::vector<double>* size_mm = nullptr;  ///< and, if given, this share of the smallest edge length requested at
   double clearance_rel = 0;                      ///< their corners
   double sheet_angle_deg = 20;  ///< between triangles at a common edge
   double corner_angle_deg = 0;  ///< smallest angle of a triangle

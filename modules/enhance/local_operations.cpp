@@ -328,7 +328,7 @@ bool LocalOperations::crowds(std::int32_t v, const Vec3& to) const {
   return false;
 }
 
-bool LocalOperations::iron(std::int32_t v) {
+bool LocalOperations::smooth_over(std::int32_t v) {
   if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty() || is_speck(v)) return false;
   const Vec3 here = mesh_.points[v];
   Vec3 mean;

@@ -41,7 +41,7 @@ class LocalOperations {
   /// angle. What goes is thinner than 0.3 of the edge length.
   bool unfold(std::int32_t triangle);
   /// Moves one vertex towards the middle of its neighbours, whatever the angles: it takes folds out.
-  bool iron(std::int32_t v);
+  bool smooth_over(std::int32_t v);
   /// Moves one vertex to the place near it that makes the smallest angle round it largest.
   bool relocate(std::int32_t v);
   /// Where a vertex belongs when it is drawn to p: on its reference sheet or curve, on its cap; itself if it
@@ -54,7 +54,7 @@ class LocalOperations {
   /// apart.
   bool lenient = false;
   /// For what is left then: sheets may come closer still.
-  void set_desperate(bool on) {
+  void set_last_resort(bool on) {
     guard.set_sheet_angle(on ? 0.3 * o_.sheet_angle_deg : o_.sheet_angle_deg);
     closer_ = on ? 0.3 : 1;
   }

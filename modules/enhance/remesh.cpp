@@ -71,12 +71,12 @@ class Remesher {
   void mend(int sweeps) {
     regrid();
     ops_.lenient = true;
-    for (const bool desperate : {false, true, false}) {
-      ops_.set_desperate(desperate);
+    for (const bool last_resort : {false, true, false}) {
+      ops_.set_last_resort(last_resort);
       for (int sweep = 0; sweep < sweeps; ++sweep) {
-        const std::size_t better = improve_worst(desperate ? 0.5 * o_.mend_angle_deg : o_.mend_angle_deg);
+        const std::size_t better = improve_worst(last_resort ? 0.5 * o_.mend_angle_deg : o_.mend_angle_deg);
         if (better == 0 || sweep % 2 == 1)
-          if (iron_bad() + better == 0) break;
+          if (smooth_bad() + better == 0) break;
       }
     }
     ops_.lenient = false;
@@ -292,7 +292,7 @@ class Remesher {
   }
 
   /// Moves the vertices of bad triangles, and those next to them, to where the surface is even; pleats that stay are cut out.
-  std::size_t iron_bad() {
+  std::size_t smooth_bad() {
     std::vector<std::int32_t> all, around;
     const double limit = 0.5 * o_.mend_angle_deg * kDegree;
     const std::vector<std::int32_t> bad = triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit || is_folded(x); });
@@ -306,7 +306,7 @@ class Remesher {
     all.erase(std::unique(all.begin(), all.end()), all.end());
     std::size_t done = 0;
     for (int pass = 0; pass < 2; ++pass)
-      for (std::int32_t v : all) done += ops_.iron(v);
+      for (std::int32_t v : all) done += ops_.smooth_over(v);
     for (std::int32_t t : bad)
       if (mesh_.alive(t) && (ops_.angle(mesh_.triangles[t].v) < limit || is_folded(t))) done += ops_.unfold(t);
     return done;

@@ -32,7 +32,7 @@ struct RemeshCounts {
   std::size_t refused_contact = 0, refused_angle = 0, refused_clearance = 0;  ///< by the guard
 };
 
-/// Remeshes to the edge length asked for at every vertex (\cite frey1998): edges above sqrt 2 of it
+/// Remeshes to the edge length requested at every vertex (\cite frey1998): edges above sqrt 2 of it
 /// are split, below 1 / sqrt 2 collapsed, with flips and relocation on the reference after each; then the
 /// worst triangles are worked on. Every operation is tested exactly against the whole complex before it is
 /// committed. `size` follows the vertices.

@@ -44,7 +44,7 @@ class Separation {
     return n.squared < gap(p) * gap(p) && n.squared > 0 && leads_off(s, t, n.on_s - n.on_t);
   }
 
-  /// Asks the corners of both for what the pair lacks; the longest wish of a vertex counts.
+  /// Asks the corners of both for what the pair lacks; the longest request of a vertex counts.
   void part(const NearPair& p) {
     const Corners3 s = corners(p.i), t = corners(p.j);
     const SharedCorners h = shared_corners(mesh_.triangles[p.i].v, mesh_.triangles[p.j].v);
@@ -103,7 +103,7 @@ class Separation {
     return std::abs(dot(way, n)) > l * norm(n) || std::abs(dot(way, m)) > l * norm(m);
   }
 
-  void wish(std::int32_t v, Vec3 step) {
+  void request(std::int32_t v, Vec3 step) {
     if (mesh_.pinned[v]) return;
     if (mesh_.flat[v]) step.z = 0;
     if (dot(step, step) > dot(step_[v], step_[v])) step_[v] = step;
@@ -119,7 +119,7 @@ class Separation {
       w[k] = std::clamp(dot(n, cross(c[(k + 1) % 3] - at, c[(k + 2) % 3] - at)) / whole, 0.0, 1.0);
       sum += w[k] * w[k];
     }
-    for (int k = 0; k < 3; ++k) wish(mesh_.triangles[t].v[k], (w[k] / sum) * move);
+    for (int k = 0; k < 3; ++k) request(mesh_.triangles[t].v[k], (w[k] / sum) * move);
   }
 
   /// Turns two triangles about their edge, each by half of what the angle lacks.
@@ -137,8 +137,8 @@ class Separation {
     const double now = std::acos(std::clamp(dot(u, w), -1.0, 1.0)), size = norm(apart);
     if (now >= angle_ || !(size > 0)) return;
     const Vec3 way = (0.5 * (angle_ - now) / size) * apart;
-    wish(mesh_.triangles[i].v[c], lx * way);
-    wish(mesh_.triangles[j].v[d], -ly * way);
+    request(mesh_.triangles[i].v[c], lx * way);
+    request(mesh_.triangles[j].v[d], -ly * way);
   }
 
   const ComplexMesh& mesh_;

@@ -83,7 +83,7 @@ class Sizing {
   void asked() {
     size_.assign(mesh_.points.size(), 0);
     fixed_.assign(mesh_.points.size(), 0);
-    std::vector<std::array<double, 2>> of_pair;  // the length asked for, the largest by curvature
+    std::vector<std::array<double, 2>> of_pair;  // the length requested, the largest by curvature
     for (std::size_t p = 0; p < mesh_.pair_count(); ++p) {
       const auto [below, above] = mesh_.labels_of(static_cast<std::int32_t>(2 * p));
       std::array<double, 2> x = {1e300, 1e300};
@@ -159,7 +159,7 @@ class Sizing {
   }
 
   /// Chords cut off what bulges. Edges are no longer than those that would cut a share of a label's volume off, as its bend predicts, were all
-  /// of its edges as long as that allows. So the bound does not depend on the length asked for, and a longer one never makes shorter edges.
+  /// of its edges as long as that allows. So the bound does not depend on the length requested, and a longer one never makes shorter edges.
   void keep_volumes(const std::vector<double>& thin) {
     const std::size_t labels = mesh_.labels().size();
     const bool outside = !mesh_.labels().empty() && mesh_.labels()[0] == 0;  // number 0 is the outside

@@ -42,13 +42,13 @@ std::vector<double> shell_sizes(const ComplexMesh& mesh, std::map<Label, ShellCo
 /// H-correction (\cite borouchaki1998): sizes grow along the surface by at most the gradation.
 void grade_sizes(const ComplexMesh& mesh, double gradation, std::vector<double>& size);
 
-/// Edge length asked for at every vertex, mm.
+/// Edge length requested at every vertex, mm.
 std::vector<double> edge_sizes(const ComplexMesh& mesh, const SizingOptions& options);
 
 /// Edges of a thin wall are at most this many times as long as it is thick, and this share of a small closed shell's size.
 constexpr double kAcrossWall = 3, kOfShell = 0.5;
 
-/// Area of a triangle as it comes out, over the square of the edge length asked for.
+/// Area of a triangle as it comes out, over the square of the edge length requested.
 constexpr double kTriangleArea = 0.39;
 
 /// How many triangles the sizes mean.

@@ -43,7 +43,7 @@ struct Neighbours {
   bool moves(std::size_t v) const { return first[v] != first[v + 1]; }
 };
 
-/// Places of the vertices at which every label has the volume asked for, to first order: label l grows by offset[l] along
+/// Places of the vertices at which every label has the volume requested, to first order: label l grows by offset[l] along
 /// its normals; between a and b the sheet moves by the difference.
 std::vector<Vec3> places_of_volumes(const ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
                                     int threads) {

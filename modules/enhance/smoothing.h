@@ -39,7 +39,7 @@ SmoothingResult smooth(ComplexMesh& mesh, const SmoothingOptions& options);
 /// Signed volume of each label but 0, mm3.
 std::map<Label, double> label_volumes(const ComplexMesh& mesh);
 
-/// Moves sheets along their normals so that every label gets the volume asked for, to first order, each by at
+/// Moves sheets along their normals so that every label gets the volume requested, to first order, each by at
 /// most `limit_mm`. Guarded as smoothing is.
 SmoothingResult restore_volumes(ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
                                 const MoveLimits& keep, int threads);

@@ -12,7 +12,7 @@
 
 namespace stackmesh {
 
-/// Loads a whole data set; long values stay in the file until they are asked for. Texts are turned to UTF-8.
+/// Loads a whole data set; long values stay in the file until they are requested. Texts are turned to UTF-8.
 /// @throws Error(input) when it cannot be opened, is no DICOM file, is damaged or ends early.
 std::unique_ptr<DcmFileFormat> load_dicom(const std::string& path);
 

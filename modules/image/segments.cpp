@@ -46,7 +46,7 @@ class Joiner {
  private:
   std::size_t pair(std::size_t a, std::size_t b) const { return std::min(a, b) * segments_.size() + std::max(a, b); }
 
-  /// Calls visit(voxel of the slice, segments there) for every voxel that has any of those asked for.
+  /// Calls visit(voxel of the slice, segments there) for every voxel that has any of those requested.
   template <class Visit>
   void each_voxel(int k, Visit visit) const {
     const std::size_t pixels = static_cast<std::size_t>(volume_.size[0]) * volume_.size[1];

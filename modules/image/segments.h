@@ -14,7 +14,7 @@ using SliceLayers = std::function<std::vector<std::vector<std::uint16_t>>(int k)
 /// Segments that may overlap to one label a voxel. Those that `labels` names are kept (empty: all); where they overlap, the
 /// one named first wins, or without names the smaller one; a segment that would all but vanish under a larger one goes before
 /// it. Fills voxels and labels of `volume` (whose size is set), with a warning of how much overlaps.
-/// @throws Error(input) for a segment that was asked for and has no voxel, Error(usage)
+/// @throws Error(input) for a segment that was requested and has no voxel, Error(usage)
 void join_segments(const std::vector<LabelInfo>& segments, const SliceLayers& layers, const std::string& labels, const std::string& path,
                    LabelVolume& volume);
 

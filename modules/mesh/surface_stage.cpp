@@ -33,7 +33,7 @@ bool is_too_large(const StitchedStage& stitched, const Call& call) {
   }
   if (!o.enhance_up_to || stitched.complex.triangles.size() <= *o.enhance_up_to) return false;
   call.warnings.push_back("the stitched surface has " + std::to_string(stitched.complex.triangles.size()) +
-                          " triangles, more than are enhanced unasked (it would take minutes): it is kept as stitched; ask for enhancement with --edge-length "
+                          " triangles, more than are enhanced by default (it would take minutes): it is kept as stitched; ask for enhancement with --edge-length "
                           "or --deviation, or reduce it with --interpolate or --simplify");
   return true;
 }
@@ -44,7 +44,7 @@ EnhanceOptions enhance_options(const StitchedStage& stitched, const MeshOptions&
   options.gap_mm = stitched.gap_mm;
   if (!stitched.faired.triangles.empty()) {
     options.faired = &stitched.faired;
-    // An organ that ends inside of the image ends as its faired surface does, unless flat ends were asked for.
+    // An organ that ends inside of the image ends as its faired surface does, unless flat ends were requested.
     options.inner_caps = o.stitch.caps == Caps::flat || !o.stitch.label_caps.empty();
   }
   options.drawn_gap_mm = stitched.drawn_gap_mm;

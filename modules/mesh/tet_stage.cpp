@@ -15,7 +15,7 @@ FillOptions fill_options(const MeshOptions& o, SurfaceLevel level) {
   FillOptions options = o.fill;
   options.known_sound = true;
   options.threads = o.threads;
-  if (level == SurfaceLevel::enhanced) {  // good triangles: inner tetrahedra may be asked for quality
+  if (level == SurfaceLevel::enhanced) {  // good triangles: quality may be requested of inner tetrahedra
     if (!options.radius_edge) options.radius_edge = 1.4;
     if (!options.max_volume_mm3) options.inner_growth = 2;
     options.improve_deg = std::max(24.0, options.dihedral_deg.value_or(0));

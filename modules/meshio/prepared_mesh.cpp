@@ -178,7 +178,7 @@ std::set<Label> labels_of(const std::vector<InterfaceTriangle>& triangles) {
 PreparedMesh prepare_triangles(std::vector<InterfaceTriangle> triangles, const std::vector<Vec3>& points,
                                const MeshWriteOptions& options, const std::string& path) {
   if (triangles.empty())
-    throw Error(ErrorKind::no_result, "the surface is empty", path, "check the labels that were asked for");
+    throw Error(ErrorKind::no_result, "the surface is empty", path, "check the labels that were requested");
   PreparedMesh mesh;
   mesh.space = space_name(options.space);
   const LabelNames names(options.labels, labels_of(triangles));
@@ -211,7 +211,7 @@ PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path) {
   if (mesh.tets.empty())
     throw Error(ErrorKind::no_result, "the volume mesh is empty", path,
-                "check the labels that were asked for");
+                "check the labels that were requested");
   if (mesh.tets.size() != mesh.labels.size())
     fail_internal("a mesh to be written has " + std::to_string(mesh.tets.size()) + " tets and " +
                       std::to_string(mesh.labels.size()) + " labels",

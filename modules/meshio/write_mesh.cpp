@@ -97,7 +97,7 @@ void write_surface(AtomicFiles& files, const std::string& path, const InterfaceC
   }
   labels.erase(0);
   if (labels.empty())
-    throw Error(ErrorKind::no_result, "the surface is empty", path, "check the labels that were asked for");
+    throw Error(ErrorKind::no_result, "the surface is empty", path, "check the labels that were requested");
   const std::size_t dot = ending_of(path);
   for (const Label label : labels) {
     const std::string to = path.substr(0, dot) + "_" + std::to_string(label) + path.substr(dot);

@@ -43,7 +43,7 @@ void write_surface(AtomicFiles& files, const std::string& path, const InterfaceC
 /// Tets come grouped by ascending label, else in the mesh's order, and points that no tet uses are left out,
 /// so that element and node n are the same in every format. The interface triangles are oriented as by
 /// write_surface(). The caller commits `files`. @throws as write_surface(); Error(internal) too when a .inp
-/// is asked for and an interface triangle is not a face of a tet of each of its labels (one that no tet has is a void); Error(output) for a
+/// is requested and an interface triangle is not a face of a tet of each of its labels (one that no tet has is a void); Error(output) for a
 /// label that Gmsh cannot number.
 void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
                   const MeshWriteOptions& options = {});

@@ -24,7 +24,7 @@ inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 
 /// A rigid (possibly mirroring) map p -> origin + x * axes[0] + y * axes[1] + z * axes[2]; the axes are
 /// orthonormal. It takes stack coordinates (in-plane x, y; stacking axis z; mm) to the world frame, LPS
-/// unless the user asked for RAS.
+/// unless the user requested RAS.
 struct Frame {
   Vec3 origin;
   std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};

@@ -105,7 +105,7 @@ std::string structure_set_in(const std::vector<std::string>& paths) {
   return content.structure_sets.empty() ? "" : label_object(content, paths[0]);
 }
 
-/// Voids are read beside the labels that were asked for; where drawn ones overlap they go first, as a cavity lies in its wall.
+/// Voids are read beside the labels that were requested; where drawn ones overlap they go first, as a cavity lies in its wall.
 InputOptions with_voids(InputOptions options) {
   if (options.voids.empty()) return options;
   if (!options.labels.empty()) options.labels = options.voids + "," + options.labels;

@@ -40,7 +40,7 @@ struct Input {
   std::vector<std::string> warnings;
 };
 
-/// Reads the input and keeps the labels that were asked for. @throws Error(input), Error(usage)
+/// Reads the input and keeps the labels that were requested. @throws Error(input), Error(usage)
 Input read_input(const InputOptions& options);
 
 /// The sections that the contours make; what was odd with them goes to the input's warnings. @throws as sections_from_contours()
@@ -54,7 +54,7 @@ void empty_voids(Stack& stack, const std::set<Label>& voids);
 /// @return its voxels there, or as they are stored where nothing tells otherwise, mm
 std::array<double, 3> reduce_to_true_grid(Input& input, int threads);
 
-/// Whether the input can be cut along the axis asked for: contours are stacked along z, and a volume needs two slices.
+/// Whether the input can be cut along the axis requested: contours are stacked along z, and a volume needs two slices.
 /// @throws Error(usage), Error(input)
 void check_stack_axis(const Input& input, StackAxis axis);
 

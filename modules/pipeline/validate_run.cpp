@@ -82,7 +82,7 @@ class ValidateRun {
     return draw_pictures(scene, options);
   }
 
-  /// The defects' triangles, where they were asked for and there are any.
+  /// The defects' triangles, where they were requested and there are any.
   void write_defects(AtomicFiles& files, RunReport& report) const {
     if (!o_.write_defects || report.defects.empty()) return;
     const InterfaceComplex part = defect_triangles(surface_, tets_.tets.empty() ? nullptr : &tets_, report.defects);
@@ -317,7 +317,7 @@ class ValidateRun {
     labels_.erase(std::remove_if(labels_.begin(), labels_.end(), [&](const LabelInfo& l) { return l.number != label; }), labels_.end());
   }
 
-  /// No labels in the file: it stands for the only label that is asked for, the one that it fits best, or all together.
+  /// No labels in the file: it stands for the only label that is requested, the one that it fits best, or all together.
   void single_surface(std::map<Label, Label>& to) {
     if (labels_.size() == 1) {
       to[1] = labels_[0].number;
@@ -357,9 +357,9 @@ class ValidateRun {
     }
   }
 
-  /// Labels of the mesh that the input does not have, or that were not asked for, are background.
+  /// Labels of the mesh that the input does not have, or that were not requested, are background.
   void forget(const std::set<Label>& unknown) {
-    if (!unknown.empty()) warn("labels of the mesh that are not asked for or not in the input are taken as background: " + list(unknown));
+    if (!unknown.empty()) warn("labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown));
   }
 
   void by_name(const std::set<Label>& of_mesh, std::map<Label, Label>& to) {

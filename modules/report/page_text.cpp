@@ -188,7 +188,7 @@ std::string model_tables(const FemReport& f) {
     const Accuracy& e = f.accuracy->estimate;
     std::string meshes;
     for (const std::size_t n : f.accuracy->elements) meshes += (meshes.empty() ? "" : ", ") + grouped(n);
-    out += "<p>Accuracy: " + number(100 * e.error_rel) + " % in set " + escaped(e.worst_set) + " (asked for " + number(100 * f.accuracy->asked_rel) + " %" +
+    out += "<p>Accuracy: " + number(100 * e.error_rel) + " % in set " + escaped(e.worst_set) + " (requested " + number(100 * f.accuracy->asked_rel) + " %" +
            (f.accuracy->reached ? "" : ", not reached") + "), by CalculiX on meshes of " + meshes + " elements; error in energy by Zienkiewicz and Zhu " +
            number(100 * (e.zz_rel.empty() ? 0 : e.zz_rel.back())) + " %.</p>\n";
     out += table_head("Convergence by set: von Mises stress on its faces (root mean square) and its largest displacement",

@@ -213,7 +213,7 @@ class GapFiller {
   std::vector<std::ptrdiff_t> body_of_;  // of a group
   std::vector<int> outline_, value_, best_, second_;
   std::vector<std::int32_t> best_group_;
-  std::vector<int> nearest_outline_, margin_;  // per pixel of the layer, if depths are asked for
+  std::vector<int> nearest_outline_, margin_;  // per pixel of the layer, if depths are requested
   std::vector<std::int32_t> placed_;
 };
 

@@ -11,7 +11,7 @@ namespace stackmesh {
 namespace {
 
 constexpr double kSmallest_px = 0.02;   // below this tolerance every vertex is kept
-constexpr double kSmallest_rel = 0.04;  // the same for free arcs, as a share of the tolerance asked for
+constexpr double kSmallest_rel = 0.04;  // the same for free arcs, as a share of the tolerance requested
 
 /// A chord that stands for the vertices [from, to] of an arc's chain.
 struct Chord {

@@ -28,7 +28,7 @@ struct OpenGap {
 /// Interpolates label layers between the sections of a stack, as add_virtual_slices does between slices, but from
 /// the exact contours: distances are those to the contours, and each layer knows where between two pixel centres
 /// a border runs. Sections may be unevenly spaced. A label or hole that lies within another label in both sections stays
-/// inside it (interpolate/nested_gap.h); where that takes more layers than asked for, the gap gets more. Layers come gap by
+/// inside it (interpolate/nested_gap.h); where that takes more layers than requested, the gap gets more. Layers come gap by
 /// gap from several threads, those of a gap in order, the first and last gap being those beyond the stack:
 /// take(gap from 0, layer).
 /// @return the gaps where nesting breaks whatever the number of layers

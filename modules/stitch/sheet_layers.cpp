@@ -5,29 +5,29 @@
 namespace stackmesh {
 namespace {
 
-using Wishes = std::vector<std::pair<std::int32_t, std::int32_t>>;
+using Orders = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
-void to_sets(Wishes& below, DisjointSets& same) {
+void to_sets(Orders& below, DisjointSets& same) {
   for (auto& b : below) b = {same.find(b.first), same.find(b.second)};
   below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }), below.end());
   std::sort(below.begin(), below.end());
   below.erase(std::unique(below.begin(), below.end()), below.end());
 }
 
-/// The wishes left when all that nothing passes beneath, and all that passes beneath nothing, is taken away.
-Wishes in_cycles(Wishes wishes, std::size_t sheets) {
-  for (std::size_t before = wishes.size() + 1; wishes.size() < before;) {
-    before = wishes.size();
+/// The orders left when all that nothing passes beneath, and all that passes beneath nothing, is taken away.
+Orders in_cycles(Orders orders, std::size_t sheets) {
+  for (std::size_t before = orders.size() + 1; orders.size() < before;) {
+    before = orders.size();
     std::vector<char> has_lower(sheets, 0), has_higher(sheets, 0);
-    for (const auto& w : wishes) has_higher[w.first] = has_lower[w.second] = 1;
-    wishes.erase(std::remove_if(wishes.begin(), wishes.end(), [&](const auto& w) { return !has_lower[w.first] || !has_higher[w.second]; }), wishes.end());
+    for (const auto& w : orders) has_higher[w.first] = has_lower[w.second] = 1;
+    orders.erase(std::remove_if(orders.begin(), orders.end(), [&](const auto& w) { return !has_lower[w.first] || !has_higher[w.second]; }), orders.end());
   }
-  return wishes;
+  return orders;
 }
 
 }  // namespace
 
-std::vector<int> sheet_layers(Wishes below, DisjointSets same) {
+std::vector<int> sheet_layers(Orders below, DisjointSets same) {
   std::vector<int> layers(same.size(), 0);
   if (below.empty()) return layers;
   to_sets(below, same);

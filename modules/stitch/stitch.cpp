@@ -229,7 +229,7 @@ class StackStitcher {
   StitchResult result_;
   const Section empty_;
   std::vector<std::pair<Label, std::size_t>> flat_low_, flat_high_;  // label, its first or last section
-  std::set<Label> flat_downward_, flat_upward_;  // whatever ends there: asked for
+  std::set<Label> flat_downward_, flat_upward_;  // whatever ends there: requested
   std::map<Label, Extent> ends_;
   std::vector<SlabSurface> slabs_;
   double scale_x_ = 1, scale_y_ = 1;

@@ -43,7 +43,7 @@ struct Boundaries {
   std::size_t open_edges = 0, nonmanifold_edges = 0;
   std::vector<std::array<std::int32_t, 2>> open_edge_list;  ///< the first `limit`, ascending
   std::vector<double> edge_lengths_mm;                      ///< one per undirected edge
-  std::vector<Neighbours> neighbours;                       ///< only when asked for
+  std::vector<Neighbours> neighbours;                       ///< only when requested
 };
 
 /// A triangle between a label and itself bounds nothing. @throws Error(input) for an index without a point or

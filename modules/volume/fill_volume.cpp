@@ -178,20 +178,20 @@ class Filler {
       if (const std::vector<Group> own = groups(); !own.empty()) {
         FillResult result = attempt({true, "", scale}, until, own);
         if (result.status == Status::verified || killed_) return result;
-        hopeless_ = false;  // the whole says why
+        retry_is_useless_ = false;  // the whole says why
         if (result.status == Status::crashed || result.status == Status::timed_out) note = result.message;  // another mesh than it gives elsewhere
         if (!options_.label_max_volume_mm3.empty()) note = result.message + ", so labels have no volume bound of their own";
       }
       FillResult result = attempt({true, "", scale}, until);
       if (result.status == Status::verified) return with_note(std::move(result), note);
-      if (hopeless_) return result;
+      if (retry_is_useless_) return result;
       refinement_pays = result.status != Status::timed_out;
       before = result.message;
     }
     Call call{false, "", scale};
     FillResult result = attempt(call, deadline_);
     if (result.status == Status::verified) return with_note(std::move(result), before);
-    if (hopeless_ || result.status == Status::timed_out) return result;
+    if (retry_is_useless_ || result.status == Status::timed_out) return result;
 
     FillResult first = std::move(result);
     if (!options_.known_sound && search(first)) return first;
@@ -300,7 +300,7 @@ class Filler {
     const std::string how = reply.text;
     reply = worker::run(program_, request, deadline, options_.given_up);
     const std::lock_guard<std::mutex> lock(warnings_mutex_);
-    if (reply.killed) hopeless_ = killed_ = true;
+    if (reply.killed) retry_is_useless_ = killed_ = true;
     else warnings_.push_back("the volume mesher was started again, as " + how);
     return reply;
   }
@@ -346,7 +346,7 @@ class Filler {
     Reply reply = call_worker(switches(call, max_volume_mm3) + "Jn", call, sized(call, max_volume_mm3), part, deadline);
     switch (reply.kind) {
       case Reply::Kind::not_a_worker:
-        hopeless_ = true;
+        retry_is_useless_ = true;
         return failure(Status::crashed, reply.text);
       case Reply::Kind::timed_out: {
         const double s = std::chrono::duration<double>(Clock::now() - start).count();
@@ -378,7 +378,7 @@ class Filler {
       if (v >= 0) v = v < known ? part.original[v] : v + offset;
     volume::Finding finding = volume::label_tets({std::move(reply.tets), std::move(reply.neighbours)}, mesh);
     if (!finding.message.empty()) {
-      hopeless_ = finding.of_input;
+      retry_is_useless_ = finding.of_input;
       return failure(Status::refused, name + ": " + finding.message, std::move(finding.triangles));
     }
     if (mesh.tets.empty()) return failure(Status::empty, name + " left no tetrahedron of any label");
@@ -509,7 +509,7 @@ class Filler {
   std::vector<std::string> warnings_;
   std::mutex warnings_mutex_;
   std::atomic<bool> killed_{false};    // twice in a row
-  std::atomic<bool> hopeless_{false};  // no worker to be had, or an invalid complex: trying again is no use
+  std::atomic<bool> retry_is_useless_{false};  // no worker to be had, or an invalid complex: trying again is no use
 };
 
 }  // namespace

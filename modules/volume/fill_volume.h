@@ -25,7 +25,7 @@ struct FillOptions {
   double timeout_s = 600;              ///< of all worker runs together, seconds
   const std::atomic<bool>* given_up = nullptr;  ///< soon after it becomes true the filling ends, as timed_out; unset: never
   bool known_sound = false;            ///< the complex was shown to have no intersections: after a refusal TetGen
-                                       ///< is not asked for them (that search is slow)
+                                       ///< does not look for them (that search is slow)
   std::string worker_path;             ///< the program stackmesh-tetgen; empty: the environment's STACKMESH_WORKER, else beside this program or library, or where it was installed
   std::vector<std::string> worker_args = {"--tetgen-worker"};
 };
@@ -55,7 +55,7 @@ struct FillResult {
 
 /// Fills every label of a closed complex with tetrahedra that keep all of its triangles; the background is
 /// left out. TetGen (\cite si2015) does it in a worker process with a timeout, boundary preserved (-pY). What
-/// comes back is improved if that is asked for, and then checked: each tet's label is flooded from the facets' (below, above), and the volumes
+/// comes back is improved if that is requested, and then checked: each tet's label is flooded from the facets' (below, above), and the volumes
 /// per label compared.
 ///
 /// A refinement that fails falls back to plain filling, and a refusal is tried again with smaller tolerances

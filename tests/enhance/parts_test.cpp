@@ -220,7 +220,7 @@ TEST(Sizing, ShellsAndSizesAreWhatTheyAreAskedToBe) {
   std::map<Label, ShellCount> shells;
   for (const double s : shell_sizes(mesh, &shells)) ASSERT_NEAR(s, 10, 1e-6);
   EXPECT_EQ(shells.at(1), (ShellCount{1, 0}));
-  const ComplexMesh large(ball(50, 4), 1e300, 1);  // so large that nothing but the length asked for counts
+  const ComplexMesh large(ball(50, 4), 1e300, 1);  // so large that nothing but the length requested counts
   SizingOptions o;
   o.edge_length_mm = 3;
   o.shell_mm.assign(large.points.size(), 1e300);

@@ -29,7 +29,7 @@ TEST_F(Segmentation, DicomOverlapGoesToTheSmallerOrTheOneNamedFirst) {
   Json r = mesh(file, {"--label", "spine,liver"});
   EXPECT_NEAR(row(r, 2).at("input_volume_mm3").get<double>(), 100 * voxel, 1e-9);
   EXPECT_NEAR(row(r, 1).at("input_volume_mm3").get<double>(), 67 * voxel, 1e-9);
-  r = mesh(file, {"--label", "spine"});  // what was not asked for takes nothing
+  r = mesh(file, {"--label", "spine"});  // what was not requested takes nothing
   EXPECT_NEAR(row(r, 2).at("input_volume_mm3").get<double>(), 100 * voxel, 1e-9);
   EXPECT_FALSE(last_.warns_of("overlap"));
 }
