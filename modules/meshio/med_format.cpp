@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "meshio/formats.h"
+#include "meshio/hdf5_times.h"
 #include "meshio/output_buffer.h"
 
 namespace stackmesh {
@@ -46,6 +47,7 @@ class MedFile {
     const med_idt id = id_;
     id_ = -1;
     check(MEDfileClose(id));
+    clear_hdf5_times(static_cast<unsigned char*>(image_.app_image_ptr), image_.app_image_size);
     OutputBuffer(file).bytes(image_.app_image_ptr, image_.app_image_size);
   }
   void check(med_err code) const {

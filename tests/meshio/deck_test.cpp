@@ -3,8 +3,10 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <set>
+#include <thread>
 
 #include "base/error.h"
 #include "sample_mesh.h"
@@ -83,6 +85,21 @@ TEST(Decks, AMedFileThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
     EXPECT_NE(run("test -e '" + to + ending + "'"), 0);
     EXPECT_NE(run("ls '" + folder + "' | grep -q part"), 0);
   }
+}
+
+TEST(Decks, MedFilesOfTheSameMeshHaveTheSameBytesWheneverTheyAreWritten) {
+  const std::string folder = testing::TempDir() + "stackmesh_med_bytes";
+  ::mkdir(folder.c_str(), 0777);
+  const auto written = [&](const std::string& name) {
+    AtomicFiles files;
+    write_volume(files, folder + "/" + name, sample_mesh(), {});
+    files.commit();
+    return read_file(folder + "/" + name);
+  };
+  const std::string first = written("a.med");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 keeps whole seconds
+  EXPECT_TRUE(first == written("b.med"));
+  EXPECT_GT(first.size(), 10000u);
 }
 
 TEST(Decks, GmshReadsTheNastranDeckInBothOrders) {
