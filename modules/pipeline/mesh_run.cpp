@@ -23,6 +23,7 @@
 #include "pipeline/volume_sections.h"
 #include "report/html_report.h"
 #include "stitch/drawn_detail.h"
+#include "volume/grow_layers.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"
 
@@ -86,6 +87,7 @@ class MeshRun {
     report_.input.space = anatomical ? o_.space : "none";
     add_label_rows(report_, input_.labels);
     for (LabelReport& row : report_.labels) row.is_void = input_.voids.count(row.label) > 0;
+    layers_ = resolve_layers(o_.layers, input_.labels, input_.voids);
     if (!input_.volume) return;
     const LabelVolume& v = *input_.volume;
     report_.input.dimensions = v.size;
@@ -283,6 +285,7 @@ class MeshRun {
       surface_ = std::move(stitched);
       report_.surface_level = "stitched";
       filled_.reset();
+      plan_.reset();
     } else {
       if (error) std::rethrow_exception(error);
       take(std::move(enhanced));
@@ -329,8 +332,14 @@ class MeshRun {
     options.outside_is_empty = whole;
     if (!whole) hollowed_ = hollowed(surface_, input_.voids);
     const InterfaceComplex& body = whole ? surface_ : hollowed_.complex;
-    refuse_too_many(estimate_tets(body, options));
-    filled_ = fill_volume(body, options);
+    if (!layers_.empty()) {
+      check_outer_faces(body, layers_);
+      plan_ = plan_layers(body, layers_, o_.threads);
+      options.outside_is_empty = false;  // the layers lie there
+    }
+    const InterfaceComplex& filled = plan_ ? plan_->core : body;
+    refuse_too_many(estimate_tets(filled, options));
+    filled_ = fill_volume(filled, options);
     if (whole) return;
     for (std::int32_t& t : filled_->offending_triangles) t = hollowed_.original[t];
   }
@@ -343,6 +352,7 @@ class MeshRun {
       report_.closure = "verified";
       mesh_ = std::move(result.mesh);
       follow_moved(result.moved_points);
+      if (plan_) take_layers();
       if (o_.order == 2) raise();
       if (o_.refine > 0) refine();
     } else {
@@ -352,6 +362,16 @@ class MeshRun {
       if (result.status == FillResult::Status::crashed) mend_ = "free some memory, or mesh fewer labels at once";
       offending_ = std::move(result.offending_triangles);
     }
+  }
+
+  void take_layers() {
+    add_layers(*mesh_, *plan_);
+    for (LayerFigures& f : plan_->figures) {
+      for (LayerPlace& p : f.places) p.at_mm = frame_.to_world(p.at_mm);
+      if (const std::string text = layer_warning(f); !text.empty()) warn(text);
+      report_.layers.push_back(std::move(f));
+    }
+    plan_.reset();
   }
 
   /// The surface has its points where the tets have them, and is checked again.
@@ -426,7 +446,7 @@ class MeshRun {
     if (mesh_) {
       to_world(mesh_->points, mesh_->faces);
       if (frame_.mirrors())
-        for (std::size_t t = 0; t < mesh_->tets.size(); ++t) turn_round(*mesh_, t);
+        turn_all_round(*mesh_);
       report_.volume = check_volume(*mesh_, {o_.threads});
       const VolumeCheck& v = *report_.volume;
       if (report_.surface_level == "enhanced" && (v.dihedral_min_deg < 1 || v.dihedral_max_deg > 179)) {
@@ -481,7 +501,7 @@ class MeshRun {
                  std::to_string(s.self_intersections) + " self-intersections";
       for (const auto& pair : s.intersecting_pairs) offending_.insert(offending_.end(), pair.begin(), pair.end());
     } else if (report_.volume && (report_.volume->inverted > 0 || !report_.volume->conforms)) {
-      refusal_ = "the volume mesh has " + std::to_string(report_.volume->inverted) + " inverted tetrahedra and " +
+      refusal_ = "the volume mesh has " + std::to_string(report_.volume->inverted) + " inverted " + (mesh_->wedges.empty() ? "tetrahedra" : "elements") + " and " +
                  std::to_string(report_.volume->nonconforming_faces + report_.volume->nonconforming_edges) + " faces or edges that do not conform";
     }
     if (!refusal_.empty()) {
@@ -614,6 +634,8 @@ class MeshRun {
   InterfaceComplex surface_, world_surface_;  // stack coordinates until judge_rest()
   Judgement beside_;
   Hollowed hollowed_;  // what was filled
+  std::map<Label, LayerSize> layers_;
+  std::optional<LayerPlan> plan_;  // of filled_
   std::optional<FillResult> filled_;
   std::optional<TetMesh> mesh_;
   HtmlPictures pictures_;

@@ -12,6 +12,7 @@
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
 #include "pipeline/keep_pieces.h"
+#include "pipeline/layers.h"
 #include "pipeline/mesh_product.h"
 #include "pipeline/volume_sections.h"
 #include "report/run_report.h"
@@ -36,6 +37,7 @@ struct MeshRunOptions {
   std::vector<std::pair<std::string, double>> label_edges_text;
   FillOptions fill;                               ///< label_max_volume_mm3 by label_volumes_text
   std::vector<std::pair<std::string, double>> label_volumes_text;
+  LayerTexts layers;                              ///< of wedges, under the outer faces of labels
   bool many_tets = false;                         ///< more than 10 million tetrahedra are wanted
   int order = 1;                                  ///< of the tetrahedra: 1 linear, 2 quadratic (10 nodes)
   int refine = 0;                                 ///< how often every tetrahedron is cut into eight, at the end

@@ -9,6 +9,7 @@
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/estimate_error.h"
+#include "model/layers.h"
 #include "model/geometry.h"
 #include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
@@ -48,6 +49,7 @@ struct LabelReport {
   double surface_area_mm2 = 0, angle_min_deg = 0;
   std::optional<double> dihedral_min_deg, dihedral_max_deg;
   std::optional<double> thin_share, thickness_p5_mm;  ///< see check_thickness
+  std::optional<std::size_t> wedges;  ///< of layers, with pyramids
   std::size_t nonmanifold_edges = 0;
   std::optional<double> mean_bend_deg, bends_above_40_share;  ///< see Bends
 };
@@ -102,6 +104,7 @@ struct FemAccuracy {
 struct FemReport {
   int order = 2;
   std::size_t nodes = 0, elements = 0, shells = 0;
+  std::size_t wedges = 0;  ///< of the elements, with pyramids
   std::string image, materials_path;  ///< "": none
   bool placeholder_materials = false;
   std::vector<FemSet> sets;
@@ -141,6 +144,7 @@ struct RunReport {
   std::optional<SurfaceCheck> surface;
   std::optional<Bends> bends;  ///< of the whole surface
   std::optional<VolumeCheck> volume;
+  std::vector<LayerFigures> layers;  ///< of wedges, by label; places in the world
   std::string closure = "skipped";  ///< verified, failed or skipped
   std::optional<FemReport> fem;     ///< of `fem` only
   std::vector<LabelReport> labels;

@@ -1,0 +1,27 @@
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/complex.h"
+#include "model/label_volume.h"
+#include "model/layers.h"
+
+namespace stackmesh {
+
+/// What --layer asks for: labels by number or name.
+using LayerTexts = std::vector<std::pair<std::string, LayerSize>>;
+
+/// @param labels all that are meshed; voids among them
+/// @throws Error(usage) for a label that is not there, is a void, or is named twice
+std::map<Label, LayerSize> resolve_layers(const LayerTexts& texts, const std::vector<LabelInfo>& labels, const std::set<Label>& voids);
+
+/// @throws Error(usage) where one of them has no outer faces
+void check_outer_faces(const InterfaceComplex& complex, const std::map<Label, LayerSize>& layers);
+
+/// "label 5: the layer ..." for a warning; empty where the layer is whole.
+std::string layer_warning(const LayerFigures& figures);
+
+}  // namespace stackmesh
