@@ -140,7 +140,8 @@ LayerPlan plan_layers(const InterfaceComplex& complex, const std::map<Label, Lay
 
 void add_layers(TetMesh& mesh, const LayerPlan& plan) {
   std::vector<std::int32_t> between(plan.foot.size(), -1);  // of a column: the first of its points between surface and foot
-  std::vector<Label> wedge_labels;
+  std::vector<std::array<std::int32_t, 6>> pyramids;
+  std::vector<Label> wedge_labels, pyramid_labels;
   for (const std::int32_t i : plan.layered) {
     const InterfaceTriangle& face = plan.faces[i];
     const Label label = outer_label(face);
@@ -162,11 +163,13 @@ void add_layers(TetMesh& mesh, const LayerPlan& plan) {
         mesh.labels.push_back(label);
         continue;
       }
-      mesh.wedges.push_back({node(0, s), node(1, s), node(2, s), node(0, s + 1), node(1, s + 1), node(2, s + 1)});
-      wedge_labels.push_back(label);
+      (f.columns == 3 ? mesh.wedges : pyramids).push_back({node(0, s), node(1, s), node(2, s), node(0, s + 1), node(1, s + 1), node(2, s + 1)});
+      (f.columns == 3 ? wedge_labels : pyramid_labels).push_back(label);
     }
   }
+  mesh.wedges.insert(mesh.wedges.end(), pyramids.begin(), pyramids.end());
   mesh.labels.insert(mesh.labels.end(), wedge_labels.begin(), wedge_labels.end());
+  mesh.labels.insert(mesh.labels.end(), pyramid_labels.begin(), pyramid_labels.end());
   mesh.faces = plan.faces;
 }
 

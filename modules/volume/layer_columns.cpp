@@ -15,11 +15,11 @@ namespace {
 constexpr double kFacing = 0.4;       // of the way to an outer face opposite, which may have a layer of its own
 constexpr double kOpposite = 0.7;     // of the way to any other face opposite
 constexpr double kRise = 0.6;         // of an edge: how much thicker a layer may be at its other end
-constexpr double kThinnest = 0.05;    // of the thickness: below it there is no layer
+constexpr double kThinnest = 0.15;    // of the thickness: below it there is no layer
 constexpr double kSeen = 0.2;         // cosine between a column and the normals of the faces about it
 constexpr double kUpright = 0.3;      // the same of the elements' ends
 constexpr double kNarrower = 0.25;    // a face's inner end over the face, by area
-constexpr double kClear = 0.3;        // of the thickness: how far inner ends stay apart
+constexpr double kClear = 0.3;        // of the thickness, or an inner end's shortest edge: how far inner ends stay apart
 constexpr double kFolded = 0.9;       // cosine between inner ends at their common edge
 constexpr double kLess = 0.7;
 constexpr int kRounds = 200;
@@ -324,7 +324,9 @@ class ColumnFinder {
         boxes[i].add(at[i][k]);
         if (moved) least = std::min(least, out_.thickness[f.v[k]]);
       }
-      clear[i] = least < 1e300 ? kClear * least : 0;
+      double shortest = 1e300;
+      for (int k = 0; k < 3; ++k) shortest = std::min(shortest, norm(at[i][(k + 1) % 3] - at[i][k]));
+      clear[i] = least < 1e300 ? kClear * std::min(least, shortest) : 0;
     }
     const BoxGrid grid(std::move(boxes));
     std::vector<std::vector<std::int32_t>> found((active.size() + kChunk - 1) / kChunk);
