@@ -61,8 +61,38 @@ void each_node(Mesh& mesh, std::size_t element, Visit visit) {
 /// @return two (of a pyramid) or three
 std::vector<std::array<std::int32_t, 4>> tets_of_wedge(const std::array<std::int32_t, 6>& wedge);
 
+/// An element as tets of its corners: itself, or those of tets_of_wedge().
+inline std::vector<std::array<std::int32_t, 4>> tets_of_element(const TetMesh& mesh, std::size_t element) {
+  if (!mesh.is_wedge(element)) return {mesh.tets[element]};
+  return tets_of_wedge(mesh.wedges[element - mesh.tets.size()]);
+}
+
 /// The mesh with each wedge as two or three tets (linear). The tets come first, unchanged.
 TetMesh with_tets_only(const TetMesh& mesh);
+
+/// Gives every element the label that `of` makes of its own; those with 0 go.
+template <class Of>
+void relabel(TetMesh& mesh, Of of) {
+  std::size_t tets = 0, wedges = 0, kept = 0;
+  const std::size_t first_wedge = mesh.tets.size(), all = mesh.elements();
+  for (std::size_t e = 0; e < all; ++e) {
+    const Label label = of(mesh.labels[e]);
+    if (label == 0) continue;
+    if (e < first_wedge) {
+      mesh.tets[tets] = mesh.tets[e];
+      if (!mesh.mid.empty()) mesh.mid[tets] = mesh.mid[e];
+      ++tets;
+    } else {
+      mesh.wedges[wedges] = mesh.wedges[e - first_wedge];
+      if (!mesh.wedge_mid.empty()) mesh.wedge_mid[wedges] = mesh.wedge_mid[e - first_wedge];
+      ++wedges;
+    }
+    mesh.labels[kept++] = label;
+  }
+  mesh.tets.resize(tets), mesh.wedges.resize(wedges), mesh.labels.resize(kept);
+  if (!mesh.mid.empty()) mesh.mid.resize(tets);
+  if (!mesh.wedge_mid.empty()) mesh.wedge_mid.resize(wedges);
+}
 
 /// A mirrored wedge is positive again: corners 0 and 1 change places, 3 and 4 too.
 inline void turn_wedge_round(TetMesh& mesh, std::size_t wedge) {

@@ -377,7 +377,7 @@ std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
     if (s.report->mesh) {
       const JudgedMesh& m = *s.report->mesh;
       out += "<div class=\"table\"><table><caption>Mesh " + escaped(s.name) + "</caption><tbody>\n" + row("file", m.path) + row("format", m.format) + row("SHA-256", m.sha256) +
-             row("in the file", grouped(m.vertices) + " vertices, " + grouped(m.triangles) + " triangles, " + grouped(m.tets) + " tetrahedra" + (m.order == 2 ? " of 10 nodes" : "")) +
+             row("in the file", grouped(m.vertices) + " vertices, " + grouped(m.triangles) + " triangles, " + grouped(m.tets) + " tetrahedra" + (m.order == 2 ? " of 10 nodes" : "") + (m.wedges > 0 ? ", " + grouped(m.wedges) + " wedges and pyramids" : "")) +
              row("labels", m.labels) + row("frame", m.space + ": " + m.space_reason) + "</tbody></table></div>\n";
     }
   out += "</div>\n<div>\n";

@@ -158,7 +158,7 @@ Json limits(const Limits& l) {
 
 Json mesh(const std::optional<JudgedMesh>& m) {
   if (!m) return nullptr;
-  return {{"path", m->path}, {"format", m->format}, {"vertices", m->vertices}, {"triangles", m->triangles}, {"tets", m->tets}, {"order", m->order},
+  return {{"path", m->path}, {"format", m->format}, {"vertices", m->vertices}, {"triangles", m->triangles}, {"tets", m->tets}, {"wedges", m->wedges}, {"order", m->order},
           {"labels", m->labels}, {"space", m->space}, {"space_reason", m->space_reason}, {"sha256", m->sha256}};
 }
 

@@ -57,7 +57,7 @@ struct LabelReport {
 /// The mesh that `validate` judged, as its file told it.
 struct JudgedMesh {
   std::string path, format;
-  std::size_t vertices = 0, triangles = 0, tets = 0;  ///< in the file, before anything was joined or left out
+  std::size_t vertices = 0, triangles = 0, tets = 0, wedges = 0;  ///< in the file, before anything was joined or left out
   int order = 1;                                      ///< 2: tets of 10 nodes
   std::string labels;       ///< where its labels came from, and which label of the input each stands for
   std::string space;        ///< "lps", "ras" or "none"
