@@ -245,6 +245,7 @@ Json fem(const FemReport& f) {
           {"accuracy", accuracy},
           {"nodes", f.nodes},
           {"elements", f.elements},
+          {"wedges", f.wedges},
           {"shells", f.shells},
           {"units", "mm, N, MPa, t/mm3"},
           {"image", f.image.empty() ? Json(nullptr) : Json(f.image)},

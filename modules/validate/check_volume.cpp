@@ -29,7 +29,8 @@ void check_input(const TetMesh& mesh) {
     each_node(mesh, t, [&](std::int32_t v) {
       if (!fine(v)) fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
     });
-  if (!mesh.wedges.empty() && mesh.wedge_mid.size() != (mesh.mid.empty() ? 0 : mesh.wedges.size()))
+  const bool all = mesh.wedge_mid.size() == mesh.wedges.size(), none = mesh.wedge_mid.empty();
+  if (!(all || none) || (!mesh.tets.empty() && !mesh.wedges.empty() && mesh.mid.empty() != none))
     fail_input("mid-side nodes for " + std::to_string(mesh.wedge_mid.size()) + " of " + std::to_string(mesh.wedges.size()) + " wedges", "tetrahedral mesh", "write the mesh again");
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
@@ -464,7 +465,7 @@ VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options)
   VolumeCheck check;
   check.nodes = mesh.points.size();
   check.tets = mesh.tets.size();
-  check.order = mesh.mid.empty() ? 1 : 2;
+  check.order = mesh.mid.empty() && mesh.wedge_mid.empty() ? 1 : 2;
   measure(mesh, options.threads, options.list_limit, check);
   ConformityCheck(mesh, options.threads, options.list_limit, check).run();
   check.nonconforming_edges = count_unshared_edges(mesh);
