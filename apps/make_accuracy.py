@@ -214,6 +214,19 @@ def write_deck(path, shape, points, tets, faces, owner, side):
         f.write("*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n")
 
 
+def curved_volume(points, tets):
+    """Within the curved sides of 10-node tetrahedra: five points are exact for the cubic determinant."""
+    p, total = points[tets], 0.0
+    for weight, places in ((-0.8, [[0.25] * 4]), (0.45, (np.eye(4) / 3 + 1 / 6).tolist())):
+        for l in places:
+            d = np.stack([(4 * l[k] - 1) * p[:, k] for k in range(4)])  # by each barycentric coordinate
+            for m, (a, b) in enumerate(EDGES):
+                d[a] += 4 * l[b] * p[:, 4 + m]
+                d[b] += 4 * l[a] * p[:, 4 + m]
+            total += weight * np.einsum("ij,ij->i", np.cross(d[1] - d[0], d[2] - d[0]), d[3] - d[0]).sum() / 6
+    return total
+
+
 def judge(shape, points, tets, folder):
     faces, owner, side = outer_faces(tets)
     write_deck(folder / "model.inp", shape, points, tets, faces, owner, side)
@@ -233,8 +246,7 @@ def judge(shape, points, tets, folder):
     at = np.flatnonzero((weight > 0) & (np.abs(polar(shape, points)[2]) <= JUDGED))
     true = true_stress(shape, points[at])
     error = ((stress[at] - true) ** 2).sum((1, 2))
-    c = points[tets[:, :4]]
-    meshed = (np.einsum("ij,ij->i", np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), c[:, 3] - c[:, 0]) / 6).sum()
+    meshed = curved_volume(points, tets)
     return {"tets": len(tets), "stress_error": float(np.sqrt((weight[at] * error).sum() / (weight[at] * (true ** 2).sum((1, 2))).sum())),
             "peak": float(mises(stress[at]).max() / mises(true).max()), "volume_error": float(meshed / volume(shape) - 1),
             "solve_s": round(time.monotonic() - start, 1)}

@@ -94,7 +94,8 @@ std::string contact_text(const SurfacePair& p) {
 
 void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
   const FemReport& f = *r.fem;
-  std::printf("mesh      %zu nodes, %zu tetrahedra of %d nodes, %zu shells\n", f.nodes, f.elements, f.order == 2 ? 10 : 4, f.shells);
+  const std::string layers = f.wedges > 0 ? ", " + std::to_string(f.wedges) + " wedges of " + (f.order == 2 ? "15" : "6") : "";
+  std::printf("mesh      %zu nodes, %zu tetrahedra of %d nodes%s, %zu shells\n", f.nodes, f.elements - f.wedges, f.order == 2 ? 10 : 4, layers.c_str(), f.shells);
   for (const FemSet& s : f.sets) std::printf("set       %-32s %7zu nodes %7zu faces  %s\n", printable(s.name).c_str(), s.nodes, s.faces, printable(s.note).c_str());
   for (const SurfacePair& p : f.pairs)
     std::printf("pair      %-32s %s\n", printable(p.parts[0] + ", " + p.parts[1]).c_str(), contact_text(p).c_str());

@@ -32,6 +32,7 @@ struct MeshArguments {
   std::string caps = "auto", space = "lps";
   double snap_mm = 0, timeout_s = 600;
   std::string max_volume;
+  std::vector<std::string> layers;
   double radius_edge = 0, dihedral = 0;
   int order = 1, refine = 0;
   std::string voids, keep_largest;
@@ -76,6 +77,9 @@ void add_options(CLI::App& command, MeshArguments& a, Target target) {
       command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
       command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")->check(CLI::Range(1, 2))->capture_default_str(),
       command.add_option("--refine", a.refine, "how often every tetrahedron is cut into eight at the end: the same surface and order, edges half as long")->check(CLI::Range(0, 4))->capture_default_str(),
+      command.add_option("--layer", a.layers, "5=1.5,3: a layer of wedges under the outer faces of a label, 1.5 mm thick, three over each other; thinner where there is no room; repeatable")
+          ->type_name("LABEL=MM,COUNT")
+          ->allow_extra_args(false),
       command.add_flag("--yes", a.yes, "go on when more than 10 million tetrahedra are estimated"),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
       command.add_option("--timeout", a.timeout_s, "for the volume mesher, and for each run of CalculiX with --accuracy, s")->check(positive)->capture_default_str()};
@@ -118,6 +122,9 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (a.min_piece_mm3 > 0) o.mesh.pieces.min_piece_mm3 = a.min_piece_mm3;
   o.mesh.order = a.order;
   o.mesh.refine = a.refine;
+  if (!a.layers.empty() && target == Target::surface) fail_usage("--layer is for volume meshes", "--layer", "leave it out, or use stackmesh mesh");
+  o.layers = parse_layers(a.layers);
+  if (!o.layers.empty() && o.mesh.refine > 0) fail_usage("--refine cuts tetrahedra, not wedges", "--layer", "leave one of them out; a smaller --edge-length and more wedges refine, too");
   o.mesh.many_tets = a.yes;
   if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.mesh.fill.max_volume_mm3);
   if (a.radius_edge > 0) o.mesh.fill.radius_edge = a.radius_edge;
@@ -184,6 +191,9 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (target == Target::volume) {
     o.option_texts.push_back({"order", std::to_string(a.order)});
     o.option_texts.push_back({"refine", std::to_string(a.refine)});
+    std::string layers;
+    for (const std::string& text : a.layers) layers += (layers.empty() ? "" : " ") + text;
+    o.option_texts.push_back({"layer", layers.empty() ? "none" : layers});
     o.option_texts.push_back({"max_volume_mm3", a.max_volume.empty() ? "unset" : a.max_volume});
     o.option_texts.push_back({"radius_edge", a.radius_edge > 0 ? text_of(a.radius_edge) : "unset"});
     o.option_texts.push_back({"dihedral_deg", a.dihedral > 0 ? text_of(a.dihedral) : "unset"});
@@ -191,12 +201,19 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   return o;
 }
 
+std::string layers_text(const VolumeCheck& v) {
+  if (v.wedges + v.pyramids == 0) return "";
+  char text[120];
+  std::snprintf(text, sizeof text, ", %zu wedges, %zu pyramids (scaled Jacobian from %.2f)", v.wedges, v.pyramids, v.wedge_scaled_jacobian_min);
+  return text;
+}
+
 void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
   std::printf("input    %zu sections, %zu labels, %zu contour vertices\n", r.input.sections, r.labels.size(), r.contours.vertices);
   std::printf("surface  %zu triangles, %zu open edges, %zu self-intersections (%s)\n", r.surface->triangles, r.surface->open_edges,
               r.surface->self_intersections, r.surface_level.c_str());
   if (r.volume)
-    std::printf("volume   %zu tetrahedra, dihedral angles %.2f to %.2f degrees, closure %s\n", r.volume->tets, r.volume->dihedral_min_deg,
+    std::printf("volume   %zu tetrahedra%s, dihedral angles %.2f to %.2f degrees, closure %s\n", r.volume->tets, layers_text(*r.volume).c_str(), r.volume->dihedral_min_deg,
                 r.volume->dihedral_max_deg, r.closure.c_str());
   for (const std::string& o : outputs) std::printf("written  %s\n", printable(o).c_str());
 }

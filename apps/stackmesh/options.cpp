@@ -142,6 +142,24 @@ std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text,
   return per_label;
 }
 
+LayerTexts parse_layers(const std::vector<std::string>& texts) {
+  const std::string mend = "write --layer 5=1.5,3: label, thickness in mm, number of wedges";
+  LayerTexts out;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('='), comma = text.find(',', equals == std::string::npos ? 0 : equals);
+    if (equals == std::string::npos || equals == 0 || comma == std::string::npos) fail_usage("'" + text + "' is no layer", "--layer", mend);
+    LayerSize size;
+    size.thickness_mm = parse_number(text.substr(equals + 1, comma - equals - 1), "--layer");
+    if (!(size.thickness_mm > 0)) fail_usage("the thickness '" + text.substr(equals + 1, comma - equals - 1) + "' is not above 0", "--layer", mend);
+    const std::string count = text.substr(comma + 1);
+    const bool digits = !count.empty() && count.size() <= 3 && count.find_first_not_of("0123456789") == std::string::npos;
+    if (!digits || std::stoi(count) < 1 || std::stoi(count) > 100) fail_usage("the number of wedges '" + count + "' is not a whole number from 1 to 100", "--layer", mend);
+    size.count = std::stoi(count);
+    out.emplace_back(text.substr(0, equals), size);
+  }
+  return out;
+}
+
 std::optional<int> parse_interpolate(const std::string& text) {
   if (text == "auto") return std::nullopt;
   const bool digits = !text.empty() && text.size() <= 4 && text.find_first_not_of("0123456789") == std::string::npos;

@@ -8,6 +8,7 @@
 
 #include "base/monitor.h"
 #include "pipeline/input.h"
+#include "pipeline/layers.h"
 #include "sections/volume_sections.h"
 #include "stitch/stitch.h"
 
@@ -51,6 +52,9 @@ double parse_number(const std::string& text, const std::string& option);
 /// "2.0" sets `all`; "5=2.0,9=1.0" is returned per label; all above 0. `what` it is and its `unit` are for errors. @throws Error(usage)
 std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option, const std::string& what, const std::string& unit,
                                                         std::optional<double>& all);
+
+/// Each "LABEL=MM,COUNT": the thickness of a layer of wedges, above 0, and how many there are over each other, from 1 to 100. @throws Error(usage)
+LayerTexts parse_layers(const std::vector<std::string>& texts);
 
 /// "auto" (no value) or a whole number from 0 to 1000. @throws Error(usage)
 std::optional<int> parse_interpolate(const std::string& text);

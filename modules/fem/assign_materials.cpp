@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <cstdio>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "fem/lay_fibres.h"
 #include "fem/map_modulus.h"
 #include "fem/tet_shape.h"
+#include "model/wedge_shape.h"
 
 namespace stackmesh {
 namespace {
@@ -38,16 +40,13 @@ class Assigner {
 
   MaterialReport run() {
     SolverSets& sets = model_.sets;
-    sets.modulus_mpa.assign(model_.mesh.tets.size(), 0);
-    sets.density_t_mm3.assign(model_.mesh.tets.size(), 0);
+    sets.modulus_mpa.assign(model_.mesh.elements(), 0);
+    sets.density_t_mm3.assign(model_.mesh.elements(), 0);
     if (plan_ != nullptr) check_plan(*plan_, model_.labels, image_ != nullptr);
     else sets.placeholder_materials = true;
-    for (std::size_t begin = 0; begin < model_.mesh.tets.size();) {  // tets are grouped by label
-      const Label label = model_.mesh.labels[begin];
-      std::vector<std::int32_t> tets;
-      for (; begin < model_.mesh.tets.size() && model_.mesh.labels[begin] == label; ++begin) tets.push_back(static_cast<std::int32_t>(begin));
-      label_material(label, tets);
-    }
+    std::map<Label, std::vector<std::int32_t>> elements;
+    for (std::size_t e = 0; e < model_.mesh.elements(); ++e) elements[model_.mesh.labels[e]].push_back(static_cast<std::int32_t>(e));
+    for (const auto& [label, list] : elements) label_material(label, list);
     for (ShellSet& s : sets.shells) skin(s);
     if (image_ != nullptr && !used_image_) report_.warnings.push_back("the image is not used: no label of the mesh has a law");
     return std::move(report_);
@@ -61,7 +60,17 @@ class Assigner {
   }
   std::string where(Label label) const { return where_of(*plan_, label, name_of(label)); }
 
-  double volume(std::int32_t t) const { return std::abs(tet_point(model_.mesh, t, {0.25, 0.25, 0.25, 0.25}).determinant) / 6; }
+  /// Of the middle's determinant.
+  double volume(std::int32_t t) const {
+    const auto element = static_cast<std::size_t>(t);
+    if (model_.mesh.is_wedge(element)) return wedge_volume(wedge_nodes(model_.mesh, element - model_.mesh.tets.size()));
+    return std::abs(tet_point(model_.mesh, element, {0.25, 0.25, 0.25, 0.25}).determinant) / 6;
+  }
+  Vec3 middle(std::int32_t t) const {
+    const auto element = static_cast<std::size_t>(t);
+    if (model_.mesh.is_wedge(element)) return wedge_point(wedge_nodes(model_.mesh, element - model_.mesh.tets.size()), {1.0 / 3, 1.0 / 3, 0, 0}).position;
+    return tet_point(model_.mesh, element, {0.25, 0.25, 0.25, 0.25}).position;
+  }
 
   void label_material(Label label, const std::vector<std::int32_t>& tets) {
     MaterialRow row;
@@ -139,7 +148,7 @@ class Assigner {
       row.young_max_mpa = i == 0 ? e : std::max(row.young_max_mpa, e);
     }
     if (bad > 0) {
-      const Vec3 p = tet_point(model_.mesh, tets[first_bad], {0.25, 0.25, 0.25, 0.25}).position;
+      const Vec3 p = middle(tets[first_bad]);
       fail_input("element " + std::to_string(tets[first_bad] + 1) + " would get a modulus of " + number(values[first_bad].young_mpa) + " MPa" +
                      (bad > 1 ? " (and " + std::to_string(bad - 1) + " more elements none above 0)" : ""),
                  where(label) + ", at (" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")", "give the label a \"floor_MPa\"");
@@ -156,7 +165,7 @@ class Assigner {
     std::size_t outside = 0;
     Vec3 p;
     for (const std::int32_t t : tets) {
-      Vec3 c = tet_point(model_.mesh, t, {0.25, 0.25, 0.25, 0.25}).position;
+      Vec3 c = middle(t);
       if (o_.ras) c = {-c.x, -c.y, c.z};
       if (image_->contains(c)) continue;
       if (outside++ == 0) p = c;

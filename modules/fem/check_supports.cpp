@@ -30,6 +30,24 @@ std::string text_of(Vec3 p) {
 
 Vec3 axis_of(int axis) { return {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0}; }
 
+/// Wedges hang together by their sides of four corners; their triangles are told to `visit`.
+template <class Visit>
+void join_wedges(const TetMesh& mesh, DisjointSets& joined, Visit visit) {
+  std::map<std::array<std::int32_t, 4>, std::int32_t> first;
+  for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
+    const auto& v = mesh.wedges[w];
+    const auto element = static_cast<std::int32_t>(mesh.tets.size() + w);
+    for (const auto& f : kWedgeFaces) visit({v[f[0]], v[f[1]], v[f[2]]}, element);
+    if (is_pyramid(v)) visit({v[1], v[2], v[4]}, element), visit({v[2], v[0], v[3]}, element);
+    for (int k = 0; k < (is_pyramid(v) ? 1 : 3); ++k) {
+      std::array<std::int32_t, 4> key = {v[k], v[(k + 1) % 3], v[3 + k], v[3 + (k + 1) % 3]};
+      std::sort(key.begin(), key.end());
+      const auto [at, fresh] = first.insert({key, element});
+      if (!fresh) joined.join(at->second, element);
+    }
+  }
+}
+
 /// Which body each tet is of, numbered by first tet.
 struct Bodies {
   std::vector<std::int32_t> of_tet;
@@ -51,45 +69,49 @@ struct Bodies {
         std::sort(s.key.begin(), s.key.end());
         sides.push_back(s);
       }
+    DisjointSets joined(mesh.elements());
+    join_wedges(mesh, joined, [&](std::array<std::int32_t, 3> key, std::int32_t element) {
+      std::sort(key.begin(), key.end());
+      sides.push_back({key, element});
+    });
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.tet < b.tet; });
-    DisjointSets joined(mesh.tets.size());
     for (std::size_t i = 0; i + 1 < sides.size(); ++i)
       if (sides[i].key == sides[i + 1].key) joined.join(sides[i].tet, sides[i + 1].tet);
-    of_tet.assign(mesh.tets.size(), 0);
+    of_tet.assign(mesh.elements(), 0);
     std::map<std::int32_t, std::int32_t> number_of;
     std::vector<std::map<Label, double>> labels;
     std::vector<std::array<Vec3, 2>> boxes;
     of_node.resize(mesh.points.size());
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (std::size_t t = 0; t < mesh.elements(); ++t) {
       const auto [at, fresh] = number_of.insert({joined.find(static_cast<std::int32_t>(t)), static_cast<std::int32_t>(list.size())});
       const std::int32_t b = of_tet[t] = at->second;
-      const auto& v = mesh.tets[t];
+      const std::vector<std::array<std::int32_t, 4>> parts = tets_of_element(mesh, t);
       if (fresh) {
         list.emplace_back();
         labels.emplace_back();
-        boxes.push_back({mesh.points[v[0]], mesh.points[v[0]]});
+        boxes.push_back({mesh.points[parts[0][0]], mesh.points[parts[0][0]]});
       }
-      const Vec3 o = mesh.points[v[0]];
-      const double volume = std::abs(dot(cross(mesh.points[v[1]] - o, mesh.points[v[2]] - o), mesh.points[v[3]] - o)) / 6;
       Body& body = list[b];
       ++body.tets;
-      body.volume_mm3 += volume;
-      labels[b][mesh.labels[t]] += volume;
-      for (const std::int32_t k : v) {
+      for (const auto& v : parts) {
+        const Vec3 o = mesh.points[v[0]];
+        const double volume = std::abs(dot(cross(mesh.points[v[1]] - o, mesh.points[v[2]] - o), mesh.points[v[3]] - o)) / 6;
+        body.volume_mm3 += volume;
+        labels[b][mesh.labels[t]] += volume;
+        for (const std::int32_t k : v) body.centre = body.centre + (0.25 * volume) * mesh.points[k];
+      }
+      each_corner(mesh, t, [&](std::int32_t k) {
         const Vec3 p = mesh.points[k];
-        body.centre = body.centre + (0.25 * volume) * p;
         Vec3 &low = boxes[b][0], &high = boxes[b][1];
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
+      });
       const auto visit = [&](std::int32_t k) {
         std::vector<std::int32_t>& here = of_node[k];
         const auto place = std::lower_bound(here.begin(), here.end(), b);
         if (place == here.end() || *place != b) here.insert(place, b);
       };
-      for (const std::int32_t k : v) visit(k);
-      if (!mesh.mid.empty())
-        for (const std::int32_t k : mesh.mid[t]) visit(k);
+      each_node(mesh, t, visit);
     }
     for (std::size_t b = 0; b < list.size(); ++b) {
       if (list[b].volume_mm3 > 0) list[b].centre = (1 / list[b].volume_mm3) * list[b].centre;

@@ -8,8 +8,8 @@ namespace stackmesh {
 
 /// Elements of a mesh by the sign of their Jacobian determinant, at corners, mid-side nodes and integration points.
 struct ElementQuality {
-  std::vector<double> scaled_jacobian;    ///< per tet, of its corners: 1 for the regular one, 0 when flat, negative when inside out
-  std::vector<std::int32_t> non_positive; ///< tets with a determinant that is not positive, ascending
+  std::vector<double> scaled_jacobian;    ///< per element, of its corners: 1 for the regular one, 0 when flat, negative when inside out
+  std::vector<std::int32_t> non_positive; ///< elements with a determinant that is not positive, ascending
 };
 
 /// @param mesh linear or second order

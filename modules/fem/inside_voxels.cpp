@@ -1,6 +1,7 @@
 #include "fem/inside_voxels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,9 +21,7 @@ InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, co
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   };
   for (const std::int32_t t : tets) {
-    for (const std::int32_t v : mesh.tets[t]) extend(v);
-    if (!mesh.mid.empty())
-      for (const std::int32_t v : mesh.mid[t]) extend(v);
+    each_node(mesh, static_cast<std::size_t>(t), extend);
   }
   const double lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
   for (int d = 0; d < 3; ++d) {
@@ -42,9 +41,12 @@ InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, co
 }
 
 void InsideVoxels::mark_inside(const TetMesh& mesh, const std::vector<std::int32_t>& tets) {
-  for (const std::int32_t t : tets) {
+  std::vector<std::array<std::int32_t, 4>> corners;
+  for (const std::int32_t t : tets)
+    for (const auto& part : tets_of_element(mesh, static_cast<std::size_t>(t))) corners.push_back(part);
+  for (const auto& t : corners) {
     Vec3 p[4];
-    for (int k = 0; k < 4; ++k) p[k] = voxel(mesh.points[mesh.tets[t][k]]) - Vec3{1.0 * low_[0], 1.0 * low_[1], 1.0 * low_[2]};
+    for (int k = 0; k < 4; ++k) p[k] = voxel(mesh.points[t[k]]) - Vec3{1.0 * low_[0], 1.0 * low_[1], 1.0 * low_[2]};
     const auto range = [&](auto part, int d, int& from, int& to) {
       double least = part(p[0]), most = least;
       for (int k = 1; k < 4; ++k) {

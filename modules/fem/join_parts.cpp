@@ -93,8 +93,10 @@ class Joiner {
       const bool is_held = std::any_of(held.begin(), held.end(), [&](const auto& h) { return sets.part_of_node[h.first] == part; });
       if (is_held) continue;
       std::set<std::int32_t> corners;
-      for (const auto& t : model_.mesh.tets)
-        if (sets.part_of_node[t[0]] == part) corners.insert(t.begin(), t.end());
+      for (std::size_t e = 0; e < model_.mesh.elements(); ++e)
+        each_corner(model_.mesh, e, [&](std::int32_t v) {
+          if (sets.part_of_node[v] == part) corners.insert(v);
+        });
       SpringSet springs;
       springs.name = unique("stabilise_" + name);
       const double each = p.stabilise * p.stiffness_mpa_mm * area / static_cast<double>(corners.size());

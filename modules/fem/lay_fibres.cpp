@@ -15,8 +15,7 @@ struct Gradients {
   double volume = 0;
 };
 
-Gradients gradients(const TetMesh& mesh, std::size_t t) {
-  const auto& v = mesh.tets[t];
+Gradients gradients(const TetMesh& mesh, const std::array<std::int32_t, 4>& v) {
   const Vec3 o = mesh.points[v[0]], a = mesh.points[v[1]] - o, b = mesh.points[v[2]] - o, c = mesh.points[v[3]] - o;
   const double six = dot(a, cross(b, c));
   Gradients g;
@@ -33,18 +32,19 @@ class Laplace {
  public:
   Laplace(const TetMesh& mesh, const std::vector<std::int32_t>& tets) : mesh_(mesh), row_of_(mesh.points.size(), -1) {
     for (const std::int32_t t : tets)
-      for (const std::int32_t v : mesh.tets[t])
-        if (row_of_[v] < 0) {
-          row_of_[v] = static_cast<std::int32_t>(value_.size());
-          value_.push_back(0.5);
-        }
+      each_corner(mesh, static_cast<std::size_t>(t), [&](std::int32_t v) {
+        if (row_of_[v] >= 0) return;
+        row_of_[v] = static_cast<std::int32_t>(value_.size());
+        value_.push_back(0.5);
+      });
     held_.assign(value_.size(), 0);
     std::vector<std::vector<std::pair<std::int32_t, double>>> rows(value_.size());
-    for (const std::int32_t t : tets) {
-      const Gradients g = gradients(mesh, t);
-      for (int i = 0; i < 4; ++i)
-        for (int k = 0; k < 4; ++k) rows[row_of_[mesh.tets[t][i]]].emplace_back(row_of_[mesh.tets[t][k]], g.volume * dot(g.of[i], g.of[k]));
-    }
+    for (const std::int32_t t : tets)
+      for (const auto& v : tets_of_element(mesh, static_cast<std::size_t>(t))) {
+        const Gradients g = gradients(mesh, v);
+        for (int i = 0; i < 4; ++i)
+          for (int k = 0; k < 4; ++k) rows[row_of_[v[i]]].emplace_back(row_of_[v[k]], g.volume * dot(g.of[i], g.of[k]));
+      }
     begins_.push_back(0);
     for (auto& row : rows) {
       std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -139,7 +139,7 @@ void lay_axes(const std::array<Vec3, 2>& axes, const std::vector<std::int32_t>& 
 std::size_t lay_fibres(SolverModel& model, Label label, const FibreRule& rule, const std::string& where) {
   const TetMesh& mesh = model.mesh;
   std::vector<std::int32_t> tets;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+  for (std::size_t t = 0; t < mesh.elements(); ++t)
     if (mesh.labels[t] == label) tets.push_back(static_cast<std::int32_t>(t));
   Laplace depth(mesh, tets);
   if (depth.hold(set_named(model, rule.from, where).nodes, 0) == 0)
@@ -148,16 +148,23 @@ std::size_t lay_fibres(SolverModel& model, Label label, const FibreRule& rule, c
     fail_input("set '" + rule.to + "' of the fibres has no node of the label, or only those of the other set", where + ", to",
                "name two sets on the label's own faces, away from each other");
   depth.solve();
-  model.sets.axes.resize(mesh.tets.size());
+  model.sets.axes.resize(mesh.elements());
   std::size_t unclear = 0;
   for (const std::int32_t t : tets) {
-    const Gradients g = gradients(mesh, t);
     Vec3 gradient;
-    double here = 0;
-    for (int k = 0; k < 4; ++k) {
-      gradient = gradient + depth.at(mesh.tets[t][k]) * g.of[k];
-      here += 0.25 * depth.at(mesh.tets[t][k]);
+    double here = 0, volumes = 0;  // of a wedge: the means of its tets
+    for (const auto& v : tets_of_element(mesh, static_cast<std::size_t>(t))) {
+      const Gradients g = gradients(mesh, v);
+      const bool alone = !mesh.is_wedge(static_cast<std::size_t>(t));
+      const double weight = alone ? 1 : g.volume;
+      volumes += weight;
+      for (int k = 0; k < 4; ++k) {
+        gradient = gradient + (weight * depth.at(v[k])) * g.of[k];
+        here += weight * (0.25 * depth.at(v[k]));
+      }
     }
+    gradient = (1 / volumes) * gradient;
+    here /= volumes;
     const double steep = norm(gradient);
     Vec3 through = steep > 0 ? (1 / steep) * gradient : Vec3{1, 0, 0};
     Vec3 along = rule.along - dot(rule.along, through) * through;

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "fem/tet_shape.h"
+#include "model/wedge_shape.h"
 
 namespace stackmesh {
 namespace {
@@ -57,27 +58,44 @@ std::vector<ModulusLaw::Value> map_modulus(const TetMesh& mesh, const std::vecto
                                            double voxel_mm, const ModulusLaw& law, const MappingOptions& options) {
   std::vector<std::vector<Place>> rules;
   for (int n = 0; n <= kMost; ++n) rules.push_back(n < 2 ? std::vector<Place>() : tet_rule(n));
+  std::vector<std::vector<WedgePlace>> wedge_rules;
+  for (int n = 0; n <= kMost && !mesh.wedges.empty(); ++n) wedge_rules.push_back(n < 2 ? std::vector<WedgePlace>() : wedge_rule(gauss(n)));
   std::vector<ModulusLaw::Value> values(tets.size());
   constexpr std::size_t block = 512;
   parallel_for((tets.size() + block - 1) / block, options.threads, [&](std::size_t b) {
     for (std::size_t i = b * block; i < std::min(tets.size(), (b + 1) * block); ++i) {
-      const auto& t = mesh.tets[tets[i]];
+      const auto element = static_cast<std::size_t>(tets[i]);
       double longest = 0;
-      for (const auto& e : kTetEdges) longest = std::max(longest, norm(mesh.points[t[e[0]]] - mesh.points[t[e[1]]]));
+      if (mesh.is_wedge(element)) {
+        for (const auto& e : kWedgeEdges) longest = std::max(longest, norm(mesh.points[mesh.wedges[element - mesh.tets.size()][e[0]]] - mesh.points[mesh.wedges[element - mesh.tets.size()][e[1]]]));
+      } else {
+        for (const auto& e : kTetEdges) longest = std::max(longest, norm(mesh.points[mesh.tets[element][e[0]]] - mesh.points[mesh.tets[element][e[1]]]));
+      }
       const int n = std::clamp(static_cast<int>(std::ceil(1.5 * longest / voxel_mm)) + 1, 3, kMost);
       double weights = 0, intensity = 0;
       ModulusLaw::Value sum;
-      for (const Place& place : rules[n]) {
-        const TetPoint p = tet_point(mesh, tets[i], place.barycentric);
-        const double w = place.weight * p.determinant, here = voxels.sample(p.position);
+      const auto add = [&](const Vec3& position, double w) {
+        const double here = voxels.sample(position);
         weights += w;
         if (!options.integrate_modulus) {
           intensity += w * here;
-          continue;
+          return;
         }
         const ModulusLaw::Value v = law.at(here);
         sum.young_mpa += w * v.young_mpa;
         sum.density_t_mm3 += w * v.density_t_mm3;
+      };
+      if (mesh.is_wedge(element)) {
+        const WedgeNodes nodes = wedge_nodes(mesh, element - mesh.tets.size());
+        for (const WedgePlace& place : wedge_rules[n]) {
+          const WedgePoint p = wedge_point(nodes, place);
+          add(p.position, place.weight * p.determinant);
+        }
+      } else {
+        for (const Place& place : rules[n]) {
+          const TetPoint p = tet_point(mesh, element, place.barycentric);
+          add(p.position, place.weight * p.determinant);
+        }
       }
       values[i] = options.integrate_modulus ? ModulusLaw::Value{sum.young_mpa / weights, sum.density_t_mm3 / weights} : law.at(intensity / weights);
     }

@@ -286,16 +286,12 @@ class Namer {
     std::vector<std::int32_t>& original = model_.sets.original;
     if (!part_names_.empty()) {
       std::vector<int> part_of_tet;
-      part_of_tet.reserve(mesh.tets.size());
+      part_of_tet.reserve(mesh.elements());
       for (const Label l : mesh.labels) part_of_tet.push_back(part_of_.at(l));
       original = split_parts(mesh, part_of_tet);
       model_.sets.parts = part_names_;
       model_.sets.part_of_node.assign(mesh.points.size(), 0);
-      for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-        for (const std::int32_t v : mesh.tets[t]) model_.sets.part_of_node[v] = part_of_tet[t];
-        if (!mesh.mid.empty())
-          for (const std::int32_t v : mesh.mid[t]) model_.sets.part_of_node[v] = part_of_tet[t];
-      }
+      for (std::size_t t = 0; t < mesh.elements(); ++t) each_node(mesh, t, [&](std::int32_t v) { model_.sets.part_of_node[v] = part_of_tet[t]; });
     }
     for (BoundaryFace& f : faces_) {
       const auto nodes = outward_nodes(mesh, f.at);
@@ -333,14 +329,12 @@ class Namer {
     if (part_names_.size() < 3) return;
     std::map<std::int32_t, std::set<int>> parts_of;                // by original node
     std::map<std::int32_t, std::set<std::int32_t>> copies;
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (std::size_t t = 0; t < mesh.elements(); ++t) {
       const auto visit = [&](std::int32_t v) {
         parts_of[original[v]].insert(part_of_.at(mesh.labels[t]));
         copies[original[v]].insert(v);
       };
-      for (const std::int32_t v : mesh.tets[t]) visit(v);
-      if (!mesh.mid.empty())
-        for (const std::int32_t v : mesh.mid[t]) visit(v);
+      each_node(mesh, t, visit);
     }
     std::map<std::set<int>, NodeSet> lines;
     for (const auto& [node, parts] : parts_of)

@@ -10,18 +10,13 @@ namespace stackmesh {
 std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& part_of) {
   constexpr int nobody = -1;
   std::vector<int> owner(mesh.points.size(), nobody);
-  const auto each_node = [&](std::size_t t, auto visit) {
-    for (std::int32_t& v : mesh.tets[t]) visit(v);
-    if (!mesh.mid.empty())
-      for (std::int32_t& v : mesh.mid[t]) visit(v);
-  };
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    each_node(t, [&](std::int32_t& v) { owner[v] = owner[v] == nobody ? part_of[t] : std::min(owner[v], part_of[t]); });
+  for (std::size_t t = 0; t < mesh.elements(); ++t)
+    each_node(mesh, t, [&](std::int32_t& v) { owner[v] = owner[v] == nobody ? part_of[t] : std::min(owner[v], part_of[t]); });
   std::vector<std::int32_t> original(mesh.points.size());
   std::iota(original.begin(), original.end(), 0);
   std::map<std::pair<std::int32_t, int>, std::int32_t> copies;  // ordered: numbers do not depend on the tets' order
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    each_node(t, [&](std::int32_t& v) {
+  for (std::size_t t = 0; t < mesh.elements(); ++t)
+    each_node(mesh, t, [&](std::int32_t& v) {
       if (part_of[t] != owner[v]) copies.insert({{v, part_of[t]}, 0});
     });
   for (auto& [key, node] : copies) {
@@ -29,8 +24,8 @@ std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& par
     mesh.points.push_back(mesh.points[key.first]);
     original.push_back(key.first);
   }
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    each_node(t, [&](std::int32_t& v) {
+  for (std::size_t t = 0; t < mesh.elements(); ++t)
+    each_node(mesh, t, [&](std::int32_t& v) {
       if (part_of[t] != owner[v]) v = copies.at({v, part_of[t]});
     });
   return original;
@@ -52,6 +47,8 @@ std::size_t join_equal_nodes(TetMesh& mesh) {
   };
   for (auto& t : mesh.tets) join(t);
   for (auto& t : mesh.mid) join(t);
+  for (auto& t : mesh.wedges) join(t);
+  for (auto& t : mesh.wedge_mid) join(t);
   for (InterfaceTriangle& t : mesh.faces) join(t.v);
   return static_cast<std::size_t>(std::count(joined.begin(), joined.end(), 1));
 }

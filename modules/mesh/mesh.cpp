@@ -70,7 +70,7 @@ std::optional<Refusal> refusal_of(const LabelMesh& m, std::optional<Refusal> of_
     no.problem = "the stitched surface has " + std::to_string(s.open_edges) + " open edges and " + std::to_string(s.self_intersections) + " self-intersections";
     for (const auto& pair : s.intersecting_pairs) no.triangles.insert(no.triangles.end(), pair.begin(), pair.end());
   } else if (m.tets_check && (m.tets_check->inverted > 0 || !m.tets_check->conforms)) {
-    no.problem = "the volume mesh has " + std::to_string(m.tets_check->inverted) + " inverted tetrahedra and " +
+    no.problem = "the volume mesh has " + std::to_string(m.tets_check->inverted) + " inverted " + (m.tets->wedges.empty() ? "tetrahedra" : "elements") + " and " +
                  std::to_string(m.tets_check->nonconforming_faces + m.tets_check->nonconforming_edges) + " faces or edges that do not conform";
   }
   if (no.problem.empty()) return std::nullopt;
@@ -108,11 +108,11 @@ void finish(SectionStage sections, LabelMesh& out, const Call& call) {
   out.behind = std::move(surface.hollowed.behind);
   out.closure = tets.closure;
   out.tets = std::move(tets.mesh);
+  out.layers = std::move(tets.layers);
   call.clock.run("validate", [&] {
     if (!out.tets) return;
     to_world(out.tets->points, out.tets->faces, out.frame);
-    if (out.frame.mirrors())
-      for (std::size_t t = 0; t < out.tets->tets.size(); ++t) turn_round(*out.tets, t);
+    if (out.frame.mirrors()) turn_all_round(*out.tets);
     out.tets_check = check_volume(*out.tets, {o.threads});
     warn_of_flat_tets(out, call.warnings);
   });

@@ -15,6 +15,7 @@
 #include "model/complex.h"
 #include "model/contours.h"
 #include "model/label_volume.h"
+#include "model/layers.h"
 #include "model/stack.h"
 #include "model/tet_mesh.h"
 #include "sections/polygons.h"
@@ -40,6 +41,7 @@ struct MeshOptions {
   std::optional<std::size_t> enhance_up_to;  ///< triangles; a larger stitched surface is kept as it is, with a warning
   EnhanceOptions enhancement;       ///< sizes, mm; pixel, gap, the faired surface and volumes that are not given are set by the call
   FillOptions fill;                 ///< sizes of the tetrahedra, mm3; the worker's program and time limit
+  std::map<Label, LayerSize> layers;  ///< of wedges, under the outer faces of labels; thinner where there is no room
   int order = 1;                    ///< of the tetrahedra: 1 linear, 2 quadratic (10 nodes)
   int refine = 0;                   ///< how often every tetrahedron is cut into eight, at the end
   bool many_tets = false;           ///< more than 10 million tetrahedra are wanted
@@ -85,6 +87,7 @@ struct LabelMesh {
   std::optional<LabelVolume> changed_labels;  ///< with MeshOptions::keep_judged: the labels as they were meshed, where pieces were left out or the grid was a finer one than theirs
   Stack sections;                        ///< with MeshOptions::keep_judged: drawn sections, as they were stitched
   std::vector<Label> behind;             ///< with voids: per face of `tets` as filled, the void on its open side, 0 where there is none
+  std::vector<LayerFigures> layers;      ///< what came of MeshOptions::layers, places in the coordinates of the mesh
   std::string lost_detail;               ///< what a strict caller does not accept: a fallback; "": nothing
   std::vector<std::string> warnings;
   std::vector<StageTime> stages;

@@ -10,6 +10,7 @@
 #include "mesh/judge.h"
 #include "mesh/mesh.h"
 #include "mesh/voids.h"
+#include "volume/grow_layers.h"
 
 namespace stackmesh {
 
@@ -50,6 +51,7 @@ struct SurfaceStage {
   SurfaceCheck stitched_check;
   std::optional<FillResult> filled;
   Hollowed hollowed;                     ///< what was filled, where there are voids
+  std::optional<LayerPlan> layers;       ///< of `filled`
   std::string lost_detail;
 };
 
@@ -58,6 +60,7 @@ struct TetStage {
   std::optional<TetMesh> mesh;
   Closure closure = Closure::skipped;
   std::optional<Refusal> refusal;
+  std::vector<LayerFigures> layers;      ///< places in the coordinates of the mesh
 };
 
 StitchedStage stitch_stage(SectionStage sections, LabelMesh& out, const Call& call);

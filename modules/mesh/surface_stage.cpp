@@ -129,6 +129,7 @@ SurfaceStage enhance(StitchedStage stitched, const Call& call) {
     out.complex = std::move(stitched.complex);
     out.level = SurfaceLevel::stitched;
     out.filled.reset();
+    out.layers.reset();
   } else {
     if (error) std::rethrow_exception(error);
     out.judged = std::move(enhanced);

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "mesh/layers.h"
 #include "mesh/stages.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"
@@ -37,6 +38,16 @@ void follow_moved(SurfaceStage& surface, const TetMesh& mesh, const std::vector<
   if (!surface.judged.is_sound()) fail_internal("the surface was sound until its worst tetrahedra were improved", "volume");
 }
 
+/// Puts the layers over the filled core.
+void take_layers(TetStage& out, LayerPlan& plan, const Frame& frame, std::vector<std::string>& warnings) {
+  add_layers(*out.mesh, plan);
+  for (LayerFigures& f : plan.figures) {
+    for (LayerPlace& p : f.places) p.at_mm = frame.to_world(p.at_mm);
+    if (const std::string text = layer_warning(f); !text.empty()) warnings.push_back(text);
+    out.layers.push_back(std::move(f));
+  }
+}
+
 /// The finer surface takes the place of the coarse one once it has passed the same checks.
 void refine(TetStage& out, SurfaceStage& surface, const Frame& frame, const MeshOptions& o) {
   refuse_too_many(static_cast<double>(out.mesh->tets.size()) * std::pow(8, o.refine), o);
@@ -57,8 +68,14 @@ void fill_stage(SurfaceStage& surface, const Call& call, const std::atomic<bool>
   const bool whole = o.voids.empty();
   if (!whole) surface.hollowed = hollowed(surface.complex, o.voids);
   const InterfaceComplex& body = whole ? surface.complex : surface.hollowed.complex;
-  refuse_too_many(estimate_tets(body, options), o);
-  surface.filled = fill_volume(body, options);
+  if (!o.layers.empty()) {
+    check_outer_faces(body, o.layers);
+    surface.layers = plan_layers(body, o.layers, o.threads);
+    options.outside_is_empty = false;  // the layers lie there
+  }
+  const InterfaceComplex& core = surface.layers ? surface.layers->core : body;
+  refuse_too_many(estimate_tets(core, options), o);
+  surface.filled = fill_volume(core, options);
   if (whole) return;
   for (std::int32_t& t : surface.filled->offending_triangles) t = surface.hollowed.original[t];
 }
@@ -81,6 +98,7 @@ TetStage tet_stage(SurfaceStage& surface, const Frame& frame, const Call& call) 
   out.closure = Closure::verified;
   out.mesh = std::move(result.mesh);
   follow_moved(surface, *out.mesh, result.moved_points, frame, o.threads);
+  if (surface.layers) take_layers(out, *surface.layers, frame, call.warnings);
   if (o.order == 2) {  // in stack coordinates, where flat caps are planes across an axis
     OrderOptions order;
     order.threads = o.threads;

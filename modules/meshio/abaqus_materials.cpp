@@ -94,7 +94,7 @@ void abaqus_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::ve
   for (const ElementMaterial& m : sets.materials) {
     std::string set;
     for (std::size_t g = 0; g < mesh.labels.size(); ++g)
-      if (mesh.labels[g].label == m.label && mesh.labels[g].end - mesh.labels[g].begin == m.tets.size()) set = label_sets[g];
+      if (mesh.labels[g].label == m.label && mesh.labels[g].elements() == m.tets.size()) set = label_sets[g];
     if (set.empty()) {
       set = element_sets.add("E_" + m.name);
       out << "*ELSET, ELSET=" << set << '\n';

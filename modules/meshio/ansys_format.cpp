@@ -15,12 +15,14 @@ namespace {
 
 /// Faces of kTetFaces as SOLID187 numbers them, and as SOLID185 does whose nodes are I J K K M M M M.
 constexpr int kFaceOfTen[4] = {1, 2, 3, 4}, kFaceOfFour[4] = {1, 2, 3, 5};
+/// Wedges and pyramids are bricks with corners that coincide (SOLID185, SOLID186): I J K K M N O O, and I J K L M M M M whose base is 0 3 4 1.
+constexpr int kFaceOfWedge[2] = {1, 6}, kFaceOfPyramid[2] = {5, 3};
 
 /// ANSYS's blocked archive, for CDREAD or /INPUT: nodes and elements in blocks of fixed fields, the rest as commands.
 class AnsysFile : FixedFields {
  public:
   AnsysFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
-    if (mesh.points.size() > 999999999 || mesh.tets.size() > 999999999)
+    if (mesh.points.size() > 999999999 || mesh.elements() > 999999999)
       fail_output("the fields of .cdb hold at most 9 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
   }
 
@@ -28,6 +30,7 @@ class AnsysFile : FixedFields {
     out_ << "/COM, stackmesh\n/COM, units: mm, N, MPa, t/mm3\n";
     if (!mesh_.space.empty()) out_ << "/COM, " << mesh_.space_mark() << '\n';
     out_ << "/PREP7\nET,1," << (mesh_.second_order() ? 187 : 185) << '\n';
+    if (mesh_.second_order() && !mesh_.wedges.empty()) out_ << "ET,2,186\n";
     nodes();
     elements();
     components();
@@ -62,16 +65,22 @@ class AnsysFile : FixedFields {
   /// Linear ones are SOLID185 with coinciding corners.
   void elements() {
     const std::vector<std::int32_t> material = material_of_tets(mesh_);
-    out_ << "EBLOCK,19,SOLID," << mesh_.tets.size() << ',' << mesh_.tets.size() << "\n(19i9)\n";
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      const auto& v = mesh_.tets[t];
-      std::vector<std::int32_t> nodes = {v[0], v[1], v[2], v[2], v[3], v[3], v[3], v[3]};
-      if (mesh_.second_order()) {
-        nodes.assign(v.begin(), v.end());
-        nodes.insert(nodes.end(), mesh_.tet_mids[t].begin(), mesh_.tet_mids[t].end());
+    out_ << "EBLOCK,19,SOLID," << mesh_.elements() << ',' << mesh_.elements() << "\n(19i9)\n";
+    for (std::size_t t = 0; t < mesh_.elements(); ++t) {
+      std::vector<std::int32_t> nodes;
+      const bool wedge = t >= mesh_.tets.size();
+      if (wedge) {
+        nodes = brick(t - mesh_.tets.size());
+      } else {
+        const auto& v = mesh_.tets[t];
+        nodes = {v[0], v[1], v[2], v[2], v[3], v[3], v[3], v[3]};
+        if (mesh_.second_order()) {
+          nodes.assign(v.begin(), v.end());
+          nodes.insert(nodes.end(), mesh_.tet_mids[t].begin(), mesh_.tet_mids[t].end());
+        }
       }
       // material, type, constants, section, coordinate system, birth, solid, shape, number of nodes, unused, number
-      for (const std::int64_t f : {number(material[t]), std::int64_t{1}, std::int64_t{1}, std::int64_t{1}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0},
+      for (const std::int64_t f : {number(material[t]), std::int64_t{wedge && mesh_.second_order() ? 2 : 1}, std::int64_t{1}, std::int64_t{1}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0},
                                    static_cast<std::int64_t>(nodes.size()), std::int64_t{0}, number(t)})
         whole(f, 9);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -82,6 +91,26 @@ class AnsysFile : FixedFields {
     }
     whole(-1, 9);
     out_ << '\n';
+  }
+
+  /// A wedge or pyramid as a brick of 8 or 20 nodes.
+  std::vector<std::int32_t> brick(std::size_t wedge) const {
+    const auto& w = mesh_.wedges[wedge];
+    const bool pyramid = is_pyramid(w);
+    std::vector<std::int32_t> nodes = pyramid ? std::vector<std::int32_t>{w[0], w[3], w[4], w[1], w[2], w[2], w[2], w[2]}
+                                              : std::vector<std::int32_t>{w[0], w[1], w[2], w[2], w[3], w[4], w[5], w[5]};
+    if (!mesh_.second_order()) return nodes;
+    const auto& m = mesh_.wedge_mids[wedge];  // Q R S T, U V W X, Y Z A B
+    for (const std::int32_t v : pyramid ? std::array<std::int32_t, 12>{m[6], m[3], m[7], m[0], w[2], w[2], w[2], w[2], m[2], m[5], m[4], m[1]}
+                                        : std::array<std::int32_t, 12>{m[0], m[1], w[2], m[2], m[3], m[4], w[5], m[5], m[6], m[7], m[8], m[8]})
+      nodes.push_back(v);
+    return nodes;
+  }
+
+  int face_number(TetFace f) const {
+    const auto e = static_cast<std::size_t>(f.tet);
+    if (e < mesh_.tets.size()) return (mesh_.second_order() ? kFaceOfTen : kFaceOfFour)[f.face];
+    return (is_pyramid(mesh_.wedges[e - mesh_.tets.size()]) ? kFaceOfPyramid : kFaceOfWedge)[f.face];
   }
 
   void component(const std::string& name, const char* kind, const std::vector<std::int64_t>& ids) {
@@ -101,7 +130,7 @@ class AnsysFile : FixedFields {
     UniqueNames names(32);
     for (const LabelGroup& g : mesh_.labels) {
       std::vector<std::int64_t> ids;
-      for (std::size_t t = g.begin; t < g.end; ++t) ids.push_back(number(t));
+      mesh_.each_element(g, [&](std::size_t t) { ids.push_back(number(t)); });
       component(names.add(deck_name(g.name)), "ELEM", ids);
     }
     for (const NodeSet& s : sets_.node_sets) {
@@ -170,7 +199,7 @@ class AnsysFile : FixedFields {
       for (const FaceSet& s : sets_.surfaces) {
         if (s.name != p.set) continue;
         for (const TetFace f : s.faces) {
-          out_ << "SFE," << f.tet + 1 << ',' << (mesh_.second_order() ? kFaceOfTen : kFaceOfFour)[f.face] << ",PRES,,";
+          out_ << "SFE," << f.tet + 1 << ',' << face_number(f) << ",PRES,,";
           out_.print20(p.mpa);
           out_ << '\n';
         }

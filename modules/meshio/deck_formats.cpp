@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "meshio/abaqus_cards.h"
+#include "meshio/element_nodes.h"
 #include "meshio/formats.h"
 #include "meshio/output_buffer.h"
 
@@ -86,8 +87,19 @@ void write_inp(std::FILE* file, const PreparedMesh& mesh) {
       out << '\n';
     }
   }
-  out << "*ELSET, ELSET=EALL, GENERATE\n1, " << mesh.tets.size() << ", 1\n";
-  std::size_t number = mesh.tets.size();
+  // Pyramids, too: neither solver has them of both orders, so they are wedges whose third side is one edge.
+  for (std::size_t g = 0; g < mesh.labels.size(); ++g) {
+    if (mesh.labels[g].wedge_begin == mesh.labels[g].wedge_end) continue;
+    out << "** layer of label " << mesh.labels[g].label << "\n*ELEMENT, TYPE=" << (mesh.second_order() ? "C3D15" : "C3D6") << ", ELSET=" << label_sets[g] << '\n';
+    for (std::size_t w = mesh.labels[g].wedge_begin; w < mesh.labels[g].wedge_end; ++w) {
+      write_element(out, mesh.tets.size() + w + 1, mesh.wedges[w], 6);
+      if (mesh.second_order())
+        for (const std::int32_t v : mesh.wedge_mids[w]) out << ", " << v + 1;
+      out << '\n';
+    }
+  }
+  out << "*ELSET, ELSET=EALL, GENERATE\n1, " << mesh.elements() << ", 1\n";
+  std::size_t number = mesh.elements();
   for (const ShellSet& s : mesh.sets.shells) {
     out << "** skin of label " << s.label << "\n*ELEMENT, TYPE=S3, ELSET=" << s.name << '\n';
     for (const TetFace f : s.faces)
@@ -134,12 +146,17 @@ void write_medit(std::FILE* file, const PreparedMesh& mesh) {
       const auto& v = mesh.triangles[t].v;
       out << v[0] + 1 << ' ' << v[1] + 1 << ' ' << v[2] + 1 << ' ' << i + 1 << '\n';
     }
-  out << "Tetrahedra\n" << mesh.tets.size() << '\n';
+  std::size_t tets = mesh.tets.size();
+  for (const auto& w : mesh.wedges) tets += tets_of_wedge(w).size();
+  out << "Tetrahedra\n" << tets << '\n';
   for (const LabelGroup& g : mesh.labels)
     for (std::size_t t = g.begin; t < g.end; ++t) {
       const auto& v = mesh.tets[t];
       out << v[0] + 1 << ' ' << v[1] + 1 << ' ' << v[2] + 1 << ' ' << v[3] + 1 << ' ' << g.label << '\n';
     }
+  for (const LabelGroup& g : mesh.labels)
+    for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w)
+      for (const auto& v : tets_of_wedge(mesh.wedges[w])) out << v[0] + 1 << ' ' << v[1] + 1 << ' ' << v[2] + 1 << ' ' << v[3] + 1 << ' ' << g.label << '\n';
   out << "End\n";
 }
 

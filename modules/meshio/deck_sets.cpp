@@ -23,12 +23,12 @@ std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides) {
   std::vector<TetFace> owners(mesh.triangles.size(), {-1, 0});
   std::vector<char> has_below(mesh.triangles.size(), 0), has_above(mesh.triangles.size(), 0);
   for (const LabelGroup& group : mesh.labels)
-    for (std::size_t t = group.begin; t < group.end; ++t)
-      for (int f = 0; f < 4; ++f) {
+    mesh.each_element(group, [&](std::size_t t) {
+      for (int f = 0; f < (t < mesh.tets.size() ? 4 : 2); ++f) {
         std::array<std::int32_t, 3> face;
         bool candidate = true;
         for (int k = 0; k < 3; ++k) {
-          face[k] = mesh.tets[t][kTetFaces[f][k]];
+          face[k] = t < mesh.tets.size() ? mesh.tets[t][kTetFaces[f][k]] : mesh.wedges[t - mesh.tets.size()][kWedgeFaces[f][k]];
           candidate = candidate && on_triangle[face[k]];
         }
         if (!candidate) continue;
@@ -42,6 +42,7 @@ std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides) {
           if (below || has_below[listed[k]] == 0) owners[listed[k]] = {static_cast<std::int32_t>(t), f};
         }
       }
+    });
   std::set<Label> filled;  // a label without tets is a void
   for (const LabelGroup& group : mesh.labels) filled.insert(group.label);
   for (std::size_t i = 0; i < owners.size(); ++i) {
@@ -83,7 +84,7 @@ void add_interface_sets(PreparedMesh& mesh) {
     m.label = g.label;
     m.young_mpa = 1;
     m.poisson = 0.3;
-    for (std::size_t t = g.begin; t < g.end; ++t) m.tets.push_back(static_cast<std::int32_t>(t));
+    mesh.each_element(g, [&](std::size_t t) { m.tets.push_back(static_cast<std::int32_t>(t)); });
     mesh.sets.materials.push_back(std::move(m));
   }
 }
@@ -95,7 +96,7 @@ const std::vector<std::int32_t>& nodes_of(const SolverSets& sets, const std::str
 }
 
 std::vector<std::int32_t> material_of_tets(const PreparedMesh& mesh) {
-  std::vector<std::int32_t> material(mesh.tets.size(), 0);
+  std::vector<std::int32_t> material(mesh.elements(), 0);
   for (std::size_t i = 0; i < mesh.sets.materials.size(); ++i)
     for (const std::int32_t t : mesh.sets.materials[i].tets) material[t] = static_cast<std::int32_t>(i);
   return material;

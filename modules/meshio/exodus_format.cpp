@@ -1,10 +1,12 @@
 #include <exodusII.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "meshio/element_nodes.h"
 #include "meshio/formats.h"
 
 namespace stackmesh {
@@ -12,6 +14,8 @@ namespace {
 
 /// Sides of an Exodus tetrahedron that are the faces of kTetFaces.
 constexpr int kSide[4] = {4, 1, 2, 3};
+/// And of a wedge and a pyramid those of kWedgeFaces.
+constexpr int kWedgeSide[2] = {4, 5}, kPyramidSide[2] = {4, 2};
 constexpr int kNameLength = 80;
 
 /// An open file; every call that fails is an error that names it.
@@ -64,26 +68,67 @@ void put_coordinates(const ExodusFile& file, const PreparedMesh& mesh) {
   file.check(ex_put_coord_names(file.id(), names));
 }
 
-/// A block of elements for each label, numbered by it.
-void put_blocks(const ExodusFile& file, const PreparedMesh& mesh) {
-  std::vector<std::string> names;
+/// Elements of one label and one shape. Those of tetrahedra are numbered by the label, the others behind all labels.
+struct Block {
+  std::int64_t id;
+  std::string type, name;
+  std::vector<std::size_t> elements;
+};
+
+std::vector<Block> blocks_of(const PreparedMesh& mesh) {
+  std::vector<Block> blocks;
   UniqueNames unique(kNameLength);
+  std::int64_t next = 0;
   for (const LabelGroup& g : mesh.labels) {
-    const int nodes = mesh.second_order() ? 10 : 4;
-    file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, g.label, nodes == 10 ? "TETRA10" : "TETRA4", static_cast<std::int64_t>(g.end - g.begin), nodes, 0, 0, 0));
-    std::vector<int> list;
-    for (std::size_t t = g.begin; t < g.end; ++t) {
-      for (const std::int32_t v : mesh.tets[t]) list.push_back(v + 1);
-      if (mesh.second_order())
-        for (const std::int32_t v : mesh.tet_mids[t]) list.push_back(v + 1);
+    next = std::max<std::int64_t>(next, g.label);
+    Block b{g.label, mesh.second_order() ? "TETRA10" : "TETRA4", unique.add(deck_name(g.name)), {}};
+    for (std::size_t t = g.begin; t < g.end; ++t) b.elements.push_back(t);
+    if (!b.elements.empty()) blocks.push_back(std::move(b));
+  }
+  for (const LabelGroup& g : mesh.labels)
+    for (const bool pyramids : {false, true}) {
+      Block b{0, pyramids ? (mesh.second_order() ? "PYRAMID13" : "PYRAMID5") : (mesh.second_order() ? "WEDGE15" : "WEDGE6"), deck_name(g.name) + (pyramids ? "_pyramids" : "_wedges"), {}};
+      for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w)
+        if (is_pyramid(mesh.wedges[w]) == pyramids) b.elements.push_back(mesh.tets.size() + w);
+      if (b.elements.empty()) continue;
+      b.id = ++next;
+      b.name = unique.add(b.name);
+      blocks.push_back(std::move(b));
     }
-    file.check(ex_put_conn(file.id(), EX_ELEM_BLOCK, g.label, list.data(), nullptr, nullptr));
-    names.push_back(unique.add(deck_name(g.name)));
+  return blocks;
+}
+
+/// Exodus counts elements block by block: the number of each, from 1.
+std::vector<int> numbers_in(const std::vector<Block>& blocks, std::size_t elements) {
+  std::vector<int> number(elements, 0);
+  int next = 0;
+  for (const Block& b : blocks)
+    for (const std::size_t e : b.elements) number[e] = ++next;
+  return number;
+}
+
+void put_blocks(const ExodusFile& file, const PreparedMesh& mesh, const std::vector<Block>& blocks) {
+  std::vector<std::string> names;
+  for (const Block& b : blocks) {
+    std::vector<int> list;
+    for (const std::size_t e : b.elements) {
+      if (e >= mesh.tets.size()) {
+        for (const std::int32_t v : wedge_nodes_of(mesh, e - mesh.tets.size(), WedgeOrder::exodus)) list.push_back(v + 1);
+        continue;
+      }
+      for (const std::int32_t v : mesh.tets[e]) list.push_back(v + 1);
+      if (mesh.second_order())
+        for (const std::int32_t v : mesh.tet_mids[e]) list.push_back(v + 1);
+    }
+    file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, b.id, b.type.c_str(), static_cast<std::int64_t>(b.elements.size()), static_cast<std::int64_t>(list.size() / b.elements.size()), 0, 0, 0));
+    file.check(ex_put_conn(file.id(), EX_ELEM_BLOCK, b.id, list.data(), nullptr, nullptr));
+    names.push_back(b.name);
   }
   file.names(EX_ELEM_BLOCK, names);
 }
 
-void put_sets(const ExodusFile& file, const SolverSets& sets) {
+void put_sets(const ExodusFile& file, const PreparedMesh& mesh, const std::vector<int>& number) {
+  const SolverSets& sets = mesh.sets;
   UniqueNames node_names(kNameLength), side_names(kNameLength);
   std::vector<std::string> names;
   int id = 0;
@@ -99,7 +144,11 @@ void put_sets(const ExodusFile& file, const SolverSets& sets) {
   id = 0;
   const auto put = [&](const std::string& name, const std::vector<TetFace>& faces) {
     std::vector<int> elements, sides;
-    for (const TetFace f : faces) elements.push_back(f.tet + 1), sides.push_back(kSide[f.face]);
+    for (const TetFace f : faces) {
+      const auto e = static_cast<std::size_t>(f.tet);
+      elements.push_back(number[e]);
+      sides.push_back(e < mesh.tets.size() ? kSide[f.face] : is_pyramid(mesh.wedges[e - mesh.tets.size()]) ? kPyramidSide[f.face] : kWedgeSide[f.face]);
+    }
     file.check(ex_put_set_param(file.id(), EX_SIDE_SET, ++id, static_cast<std::int64_t>(faces.size()), 0));
     if (!faces.empty()) file.check(ex_put_set(file.id(), EX_SIDE_SET, id, elements.data(), sides.data()));
     names.push_back(side_names.add(name));
@@ -110,12 +159,12 @@ void put_sets(const ExodusFile& file, const SolverSets& sets) {
 }
 
 /// What every element is made of, as element variables of the only time step.
-void put_materials(const ExodusFile& file, const PreparedMesh& mesh) {
+void put_materials(const ExodusFile& file, const PreparedMesh& mesh, const std::vector<Block>& blocks) {
   const SolverSets& sets = mesh.sets;
   if (sets.materials.empty() || sets.placeholder_materials) return;
   const std::vector<std::int32_t> material = material_of_tets(mesh);
-  std::vector<std::vector<double>> values(3, std::vector<double>(mesh.tets.size()));
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+  std::vector<std::vector<double>> values(3, std::vector<double>(mesh.elements()));
+  for (std::size_t t = 0; t < mesh.elements(); ++t) {
     const ElementMaterial& m = sets.materials[material[t]];
     values[0][t] = sets.modulus_mpa.empty() ? m.young_mpa : sets.modulus_mpa[t];
     values[1][t] = m.poisson;
@@ -125,8 +174,11 @@ void put_materials(const ExodusFile& file, const PreparedMesh& mesh) {
   const double time = 0;
   file.check(ex_put_time(file.id(), 1, &time));
   for (std::size_t k = 0; k < values.size(); ++k)
-    for (const LabelGroup& g : mesh.labels)
-      file.check(ex_put_var(file.id(), 1, EX_ELEM_BLOCK, static_cast<int>(k) + 1, g.label, static_cast<std::int64_t>(g.end - g.begin), values[k].data() + g.begin));
+    for (const Block& b : blocks) {
+      std::vector<double> of_block;
+      for (const std::size_t e : b.elements) of_block.push_back(values[k][e]);
+      file.check(ex_put_var(file.id(), 1, EX_ELEM_BLOCK, static_cast<int>(k) + 1, b.id, static_cast<std::int64_t>(of_block.size()), of_block.data()));
+    }
 }
 
 }  // namespace
@@ -135,15 +187,16 @@ void write_exodus(const std::string& path, const PreparedMesh& mesh) {
   for (const LabelGroup& g : mesh.labels)
     if (g.label <= 0) fail_output("Exodus numbers its blocks from 1", "label " + std::to_string(g.label), "renumber the label or write another format");
   ExodusFile file(path);
+  const std::vector<Block> blocks = blocks_of(mesh);
   const SolverSets& sets = mesh.sets;
   const std::string title = "stackmesh, mm" + (mesh.space.empty() ? "" : ", " + mesh.space_mark());
-  file.check(ex_put_init(file.id(), title.c_str(), 3, static_cast<std::int64_t>(mesh.points.size()), static_cast<std::int64_t>(mesh.tets.size()),
-                         static_cast<std::int64_t>(mesh.labels.size()), static_cast<std::int64_t>(sets.node_sets.size()),
+  file.check(ex_put_init(file.id(), title.c_str(), 3, static_cast<std::int64_t>(mesh.points.size()), static_cast<std::int64_t>(mesh.elements()),
+                         static_cast<std::int64_t>(blocks.size()), static_cast<std::int64_t>(sets.node_sets.size()),
                          static_cast<std::int64_t>(sets.surfaces.size() + sets.shells.size())));
   put_coordinates(file, mesh);
-  put_blocks(file, mesh);
-  put_sets(file, sets);
-  put_materials(file, mesh);
+  put_blocks(file, mesh, blocks);
+  put_sets(file, mesh, numbers_in(blocks, mesh.elements()));
+  put_materials(file, mesh, blocks);
   file.close();
 }
 

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "meshio/element_nodes.h"
 #include "meshio/febio_steps.h"
 #include "meshio/formats.h"
 #include "meshio/output_buffer.h"
@@ -14,7 +15,20 @@ class FebioFile {
  public:
   FebioFile(std::FILE* file, const PreparedMesh& mesh) : out_(file), mesh_(mesh), sets_(mesh.sets) {
     UniqueNames names(80);
-    for (const LabelGroup& g : mesh.labels) parts_.push_back(names.add(deck_name(g.name)));
+    for (const LabelGroup& g : mesh.labels) {
+      Part part{names.add(deck_name(g.name)), g.label, mesh.second_order() ? "tet10" : "tet4", {}};
+      for (std::size_t t = g.begin; t < g.end; ++t) part.elements.push_back(t);
+      if (!part.elements.empty()) parts_.push_back(std::move(part));
+    }
+    for (const LabelGroup& g : mesh.labels)
+      for (const bool pyramids : {false, true}) {
+        Part part{deck_name(g.name) + (pyramids ? "_pyramids" : "_wedges"), g.label, pyramids ? (mesh.second_order() ? "pyra13" : "pyra5") : (mesh.second_order() ? "penta15" : "penta6"), {}};
+        for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w)
+          if (is_pyramid(mesh.wedges[w]) == pyramids) part.elements.push_back(mesh.tets.size() + w);
+        if (part.elements.empty()) continue;
+        part.name = names.add(part.name);
+        parts_.push_back(std::move(part));
+      }
   }
 
   void write() {
@@ -37,6 +51,14 @@ class FebioFile {
   }
 
  private:
+  /// Elements of one label and one shape; FEBio wants them apart, and each part has a material of its own.
+  struct Part {
+    std::string name;
+    Label label;
+    const char* type;
+    std::vector<std::size_t> elements;
+  };
+
   bool is_mapped(Label label) const {
     for (const Label l : sets_.mapped)
       if (l == label) return true;
@@ -51,7 +73,7 @@ class FebioFile {
 
   /// A material without a density keeps FEBio's own.
   bool has_density(std::size_t g) const {
-    for (std::size_t t = mesh_.labels[g].begin; t < mesh_.labels[g].end; ++t)
+    for (const std::size_t t : parts_[g].elements)
       if (sets_.density_t_mm3[t] > 0) return true;
     return false;
   }
@@ -63,7 +85,7 @@ class FebioFile {
     if (sets_.placeholder_materials) out_ << "<!-- no material law was given: E = 1 MPa and v = 0.3 hold the place -->\n";
     int id = 0;
     for (std::size_t g = 0; g < parts_.size(); ++g) {
-      const ElementMaterial& m = material_of(mesh_.labels[g].label);
+      const ElementMaterial& m = material_of(parts_[g].label);
       material(++id, g, m);
     }
     for (const ShellSet& s : sets_.shells) {
@@ -82,15 +104,15 @@ class FebioFile {
   void material(int id, std::size_t g, const ElementMaterial& m) {
     const std::vector<double>& c = m.constants;
     const auto begin = [&](const char* type) {
-      out_ << "<material id=\"" << id << "\" name=\"M_" << parts_[g] << "\" type=\"" << type << "\">\n";
+      out_ << "<material id=\"" << id << "\" name=\"M_" << parts_[g].name << "\" type=\"" << type << "\">\n";
       if (!is_mapped(m.label) && m.density_t_mm3 > 0) constant("density", m.density_t_mm3);
     };
     switch (m.kind) {
       case MaterialKind::linear:
         begin("isotropic elastic");
         if (is_mapped(m.label)) {
-          if (has_density(g)) out_ << "<density type=\"map\">density_" << parts_[g] << "</density>\n";
-          out_ << "<E type=\"map\">E_" << parts_[g] << "</E>\n";
+          if (has_density(g)) out_ << "<density type=\"map\">density_" << parts_[g].name << "</density>\n";
+          out_ << "<E type=\"map\">E_" << parts_[g].name << "</E>\n";
         } else {
           constant("E", m.young_mpa);
         }
@@ -134,10 +156,15 @@ class FebioFile {
     out_ << "</Nodes>\n";
     const bool quadratic = mesh_.second_order();
     for (std::size_t g = 0; g < parts_.size(); ++g) {
-      out_ << "<!-- label " << mesh_.labels[g].label << " -->\n<Elements type=\"" << (quadratic ? "tet10" : "tet4") << "\" name=\""
-           << parts_[g] << "\">\n";
-      for (std::size_t t = mesh_.labels[g].begin; t < mesh_.labels[g].end; ++t) {
+      out_ << "<!-- label " << parts_[g].label << " -->\n<Elements type=\"" << parts_[g].type << "\" name=\"" << parts_[g].name << "\">\n";
+      for (const std::size_t t : parts_[g].elements) {
         out_ << "<elem id=\"" << t + 1 << "\">";
+        if (t >= mesh_.tets.size()) {
+          const std::vector<std::int32_t> nodes = wedge_nodes_of(mesh_, t - mesh_.tets.size(), WedgeOrder::abaqus);
+          list(nodes, 0, nodes.size());
+          out_ << "</elem>\n";
+          continue;
+        }
         list(mesh_.tets[t], 0, 4);
         if (quadratic) {
           out_ << ',';
@@ -147,7 +174,7 @@ class FebioFile {
       }
       out_ << "</Elements>\n";
     }
-    std::size_t number = mesh_.tets.size();
+    std::size_t number = mesh_.elements();
     for (const ShellSet& s : sets_.shells) {
       out_ << "<Elements type=\"" << (quadratic ? "tri6" : "tri3") << "\" name=\"" << s.name << "\">\n";
       for (const TetFace f : s.faces) {
@@ -184,7 +211,7 @@ class FebioFile {
 
   void domains() {
     out_ << "<MeshDomains>\n";
-    for (const std::string& part : parts_) out_ << "<SolidDomain name=\"" << part << "\" mat=\"M_" << part << "\"/>\n";
+    for (const Part& part : parts_) out_ << "<SolidDomain name=\"" << part.name << "\" mat=\"M_" << part.name << "\"/>\n";
     for (const ShellSet& s : sets_.shells) {
       out_ << "<ShellDomain name=\"" << s.name << "\" mat=\"M_" << s.name << "\">\n";
       constant("shell_thickness", s.thickness_mm);
@@ -198,12 +225,12 @@ class FebioFile {
     if (sets_.mapped.empty() && sets_.axes.empty() && !steps.has_forces()) return;
     out_ << "<MeshData>\n";
     for (std::size_t g = 0; g < parts_.size(); ++g) {
-      const LabelGroup& group = mesh_.labels[g];
-      if (!is_mapped(group.label)) continue;
+      const Part& part = parts_[g];
+      if (!is_mapped(part.label)) continue;
       const auto map = [&](const char* what, const std::vector<double>& values) {
-        out_ << "<ElementData name=\"" << what << '_' << parts_[g] << "\" elem_set=\"" << parts_[g] << "\">\n";
-        for (std::size_t t = group.begin; t < group.end; ++t)
-          out_ << "<elem lid=\"" << t - group.begin + 1 << "\">" << values[t] << "</elem>\n";
+        out_ << "<ElementData name=\"" << what << '_' << part.name << "\" elem_set=\"" << part.name << "\">\n";
+        for (std::size_t i = 0; i < part.elements.size(); ++i)
+          out_ << "<elem lid=\"" << i + 1 << "\">" << values[part.elements[i]] << "</elem>\n";
         out_ << "</ElementData>\n";
       };
       if (has_density(g)) map("density", sets_.density_t_mm3);
@@ -216,12 +243,12 @@ class FebioFile {
 
   /// Material axes of a label's elements.
   void axes(std::size_t g) {
-    const LabelGroup& group = mesh_.labels[g];
-    if (sets_.axes.empty() || norm(sets_.axes[group.begin][0]) == 0) return;
-    out_ << "<ElementData type=\"mat_axis\" elem_set=\"" << parts_[g] << "\">\n";
-    for (std::size_t t = group.begin; t < group.end; ++t) {
-      const auto& [a, d] = sets_.axes[t];
-      out_ << "<elem lid=\"" << t - group.begin + 1 << "\"><a>" << a.x << ',' << a.y << ',' << a.z << "</a><d>" << d.x << ',' << d.y << ',' << d.z << "</d></elem>\n";
+    const Part& part = parts_[g];
+    if (sets_.axes.empty() || norm(sets_.axes[part.elements[0]][0]) == 0) return;
+    out_ << "<ElementData type=\"mat_axis\" elem_set=\"" << part.name << "\">\n";
+    for (std::size_t i = 0; i < part.elements.size(); ++i) {
+      const auto& [a, d] = sets_.axes[part.elements[i]];
+      out_ << "<elem lid=\"" << i + 1 << "\"><a>" << a.x << ',' << a.y << ',' << a.z << "</a><d>" << d.x << ',' << d.y << ',' << d.z << "</d></elem>\n";
     }
     out_ << "</ElementData>\n";
   }
@@ -251,7 +278,7 @@ class FebioFile {
   OutputBuffer out_;
   const PreparedMesh& mesh_;
   const SolverSets& sets_;
-  std::vector<std::string> parts_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "meshio/element_nodes.h"
 #include "meshio/formats.h"
 #include "meshio/output_buffer.h"
 
@@ -101,8 +102,9 @@ struct Surfaces {
   }
 
   static Label label_of(const PreparedMesh& mesh, std::int32_t tet) {
+    const auto element = static_cast<std::size_t>(tet);
     for (const LabelGroup& g : mesh.labels)
-      if (static_cast<std::size_t>(tet) < g.end) return g.label;
+      if (element < mesh.tets.size() ? element < g.end : element - mesh.tets.size() < g.wedge_end) return g.label;
     return 0;
   }
 };
@@ -185,6 +187,8 @@ std::vector<Entity> make_entities(const PreparedMesh& mesh, const Surfaces& surf
       if (mesh.second_order())
         for (const std::int32_t v : mesh.tet_mids[t]) take(entity, v);
     }
+    for (std::size_t w = group.wedge_begin; w < group.wedge_end; ++w)
+      for (const std::int32_t v : wedge_nodes_of(mesh, w, WedgeOrder::gmsh)) take(entity, v);
     for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
       const Patch& patch = surfaces.patches[i];
       if (patch.below != group.label && patch.above != group.label) continue;
@@ -208,6 +212,20 @@ void write_tet(OutputBuffer& out, const PreparedMesh& mesh, std::size_t t) {
   for (const std::int32_t v : mesh.tets[t]) out << ' ' << v + 1;
   if (mesh.second_order())
     for (const int e : {0, 1, 2, 3, 5, 4}) out << ' ' << mesh.tet_mids[t][e] + 1;
+  out << '\n';
+}
+
+/// Wedges and pyramids of a label, apart: a block has one type.
+struct WedgeBlocks {
+  std::vector<std::size_t> of[2];
+  WedgeBlocks(const PreparedMesh& mesh, const LabelGroup& g) {
+    for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w) of[is_pyramid(mesh.wedges[w])].push_back(w);
+  }
+  static int type(const PreparedMesh& mesh, int pyramid) { return mesh.second_order() ? (pyramid ? 19 : 18) : (pyramid ? 7 : 6); }
+  std::size_t blocks() const { return static_cast<std::size_t>(!of[0].empty()) + static_cast<std::size_t>(!of[1].empty()); }
+};
+void write_wedge(OutputBuffer& out, const PreparedMesh& mesh, std::size_t w) {
+  for (const std::int32_t v : wedge_nodes_of(mesh, w, WedgeOrder::gmsh)) out << ' ' << v + 1;
   out << '\n';
 }
 
@@ -252,14 +270,16 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   out << "$EndNodes\n";
 
   // Tets first in number, so that a tet has the same number in every format.
-  const std::size_t count = surfaces.triangles() + mesh.tets.size() + surfaces.point_count();
-  out << "$Elements\n" << surfaces.points.size() + entities.size() << ' ' << count << " 1 " << count << '\n';
-  std::size_t number = mesh.tets.size() + surfaces.triangles();
+  const std::size_t count = surfaces.triangles() + mesh.elements() + surfaces.point_count();
+  std::size_t element_blocks = surfaces.points.size() + entities.size();
+  for (const LabelGroup& g : mesh.labels) element_blocks += WedgeBlocks(mesh, g).blocks();
+  out << "$Elements\n" << element_blocks << ' ' << count << " 1 " << count << '\n';
+  std::size_t number = mesh.elements() + surfaces.triangles();
   for (std::size_t i = 0; i < surfaces.points.size(); ++i) {
     out << "0 " << surfaces.point_tag(surface_tag, i) << " 15 " << surfaces.points[i]->nodes.size() << '\n';
     for (const std::int32_t v : surfaces.points[i]->nodes) out << ++number << ' ' << v + 1 << '\n';
   }
-  number = mesh.tets.size();
+  number = mesh.elements();
   for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
     const Patch& patch = surfaces.patches[i];
     out << "2 " << surface_tag + static_cast<std::int32_t>(i) << (mesh.second_order() ? " 9 " : " 2 ") << patch.triangles.size() << '\n';
@@ -273,6 +293,15 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
     for (std::size_t t = g.begin; t < g.end; ++t) {
       out << t + 1;
       write_tet(out, mesh, t);
+    }
+    const WedgeBlocks wedges(mesh, g);
+    for (const int pyramid : {0, 1}) {
+      if (wedges.of[pyramid].empty()) continue;
+      out << "3 " << g.label << ' ' << WedgeBlocks::type(mesh, pyramid) << ' ' << wedges.of[pyramid].size() << '\n';
+      for (const std::size_t w : wedges.of[pyramid]) {
+        out << mesh.tets.size() + w + 1;
+        write_wedge(out, mesh, w);
+      }
     }
   }
   out << "$EndElements\n";
@@ -290,7 +319,7 @@ void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
     out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
   }
   // This version has one group an element: a triangle of several is written once for each, as Gmsh does.
-  std::size_t count = mesh.tets.size() + surfaces.point_count();
+  std::size_t count = mesh.elements() + surfaces.point_count();
   for (const Patch& patch : surfaces.patches) count += patch.groups.size() * patch.triangles.size();
   out << "$EndNodes\n$Elements\n" << count << '\n';
   // Number, type, two tags (physical group and entity), nodes.
@@ -299,7 +328,12 @@ void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
       out << t + 1 << (mesh.second_order() ? " 11 2 " : " 4 2 ") << g.label << ' ' << g.label;
       write_tet(out, mesh, t);
     }
-  std::size_t number = mesh.tets.size();
+  for (const LabelGroup& g : mesh.labels)
+    for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w) {
+      out << mesh.tets.size() + w + 1 << ' ' << WedgeBlocks::type(mesh, is_pyramid(mesh.wedges[w])) << " 2 " << g.label << ' ' << g.label;
+      write_wedge(out, mesh, w);
+    }
+  std::size_t number = mesh.elements();
   for (std::size_t i = 0; i < surfaces.patches.size(); ++i)
     for (const std::size_t g : surfaces.patches[i].groups)
       for (const auto& t : surfaces.patches[i].triangles) {

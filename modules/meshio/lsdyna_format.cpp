@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -15,7 +16,7 @@ namespace {
 class DynaFile : FixedFields {
  public:
   DynaFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
-    if (mesh.points.size() > 99999999 || mesh.tets.size() > 99999999)
+    if (mesh.points.size() > 99999999 || mesh.elements() > 99999999)
       fail_output("LS-DYNA's numbers have at most 8 digits here", std::to_string(mesh.points.size()) + " nodes", "write another format");
   }
 
@@ -56,11 +57,22 @@ class DynaFile : FixedFields {
     out_ << "*SECTION_SOLID\n";
     row({1, mesh_.second_order() ? 16 : 10});
     out_ << '\n';
+    if (!mesh_.wedges.empty()) {  // wedges and pyramids, fully integrated
+      out_ << "*SECTION_SOLID\n";
+      row({wedge_section(), 15});
+      out_ << '\n';
+    }
     if (sets_.placeholder_materials) out_ << "$ no material law was given: E = 1 MPa and a ratio of 0.3 hold the place\n";
     for (std::size_t i = 0; i < sets_.materials.size(); ++i) {
       const ElementMaterial& m = sets_.materials[i];
       part(m.name, number(i), 1);
       material(number(i), m.young_mpa, m.poisson, m.density_t_mm3);
+    }
+    for (std::size_t i = 0; i < sets_.materials.size() && !mesh_.wedges.empty(); ++i) {
+      const ElementMaterial& m = sets_.materials[i];
+      if (m.tets.empty() || static_cast<std::size_t>(m.tets.back()) < mesh_.tets.size()) continue;
+      part(m.name + "_wedges", wedge_part(i), wedge_section());
+      material(wedge_part(i), m.young_mpa, m.poisson, m.density_t_mm3);
     }
     for (std::size_t i = 0; i < sets_.shells.size(); ++i) {
       const ShellSet& s = sets_.shells[i];
@@ -74,6 +86,10 @@ class DynaFile : FixedFields {
       material(id, s.young_mpa, s.poisson, s.density_t_mm3);
     }
   }
+
+  /// Of wedges: parts behind those of materials and skins, a section behind those of skins.
+  std::int64_t wedge_part(std::size_t material) const { return number(sets_.materials.size() + sets_.shells.size() + material); }
+  std::int64_t wedge_section() const { return number(sets_.shells.size()) + 1; }
 
   void nodes() {
     out_ << "*NODE\n";
@@ -99,11 +115,20 @@ class DynaFile : FixedFields {
         for (int k = 0; k < 4; ++k) small(number(v[3]));
       out_ << '\n';
     }
+    for (std::size_t i = 0; i < mesh_.wedges.size(); ++i) {  // corners repeated: n5 = n6 and n7 = n8 make a wedge, n5 to n8 a pyramid
+      const std::size_t e = mesh_.tets.size() + i;
+      small(number(e)), small(wedge_part(static_cast<std::size_t>(material[e])));
+      out_ << '\n';
+      const auto& w = mesh_.wedges[i];
+      const std::array<int, 8> order = is_pyramid(w) ? std::array<int, 8>{0, 3, 4, 1, 2, 2, 2, 2} : std::array<int, 8>{1, 0, 3, 4, 2, 2, 5, 5};
+      for (const int k : order) small(number(w[k]));
+      out_ << '\n';
+    }
   }
 
   /// Shells of the corners: LS-DYNA's triangles of six nodes go with few materials.
   void skins() {
-    std::int64_t element = static_cast<std::int64_t>(mesh_.tets.size());
+    std::int64_t element = static_cast<std::int64_t>(mesh_.elements());
     for (std::size_t i = 0; i < sets_.shells.size(); ++i) {
       out_ << "*ELEMENT_SHELL\n";
       for (const TetFace f : sets_.shells[i].faces) {
@@ -133,6 +158,8 @@ class DynaFile : FixedFields {
       std::vector<std::int64_t> ids;
       for (std::size_t i = 0; i < sets_.materials.size(); ++i)
         if (sets_.materials[i].label == mesh_.labels[g].label) ids.push_back(number(i));
+      for (std::size_t i = 0; i < sets_.materials.size() && !mesh_.wedges.empty(); ++i)
+        if (sets_.materials[i].label == mesh_.labels[g].label && static_cast<std::size_t>(sets_.materials[i].tets.back()) >= mesh_.tets.size()) ids.push_back(wedge_part(i));
       list("*SET_PART_LIST_TITLE", deck_name(mesh_.labels[g].name), number(g), ids);
     }
   }
@@ -254,6 +281,8 @@ class DynaFile : FixedFields {
 }  // namespace
 
 void write_dyna(std::FILE* file, const PreparedMesh& mesh) {
+  if (mesh.second_order() && !mesh.wedges.empty())
+    fail_usage("second-order wedges are not written to LS-DYNA's .k", "--layer with --order 2", "take --order 1, or choose .inp .feb .bdf .cdb or .vtu");
   OutputBuffer out(file);
   DynaFile(out, mesh).write();
 }

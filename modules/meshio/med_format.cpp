@@ -21,6 +21,9 @@ constexpr char kMesh[] = "stackmesh";
 constexpr std::size_t kNameLength = 24;
 /// MED's tetrahedra are wound the other way: corners, then mid-side nodes (kTetEdges) of its edges 12, 23, 31, 14, 24, 34.
 constexpr int kCorner[4] = {0, 2, 1, 3}, kMid[6] = {2, 1, 0, 3, 5, 4};
+/// And so are its wedges (kWedgeEdges), and pyramids: the base 0 1 4 3, the apex 2; edges of the base, then those to the apex.
+constexpr int kWedgeCorner[6] = {0, 2, 1, 3, 5, 4}, kWedgeMid[9] = {2, 1, 0, 5, 4, 3, 6, 8, 7};
+constexpr int kPyramidCorner[5] = {0, 1, 4, 3, 2}, kPyramidMid[8] = {0, 7, 3, 6, 2, 1, 4, 5};
 
 /// Names in fields of a fixed width, one behind the other.
 std::string fields(const std::vector<std::string>& names, std::size_t width) {
@@ -107,15 +110,19 @@ void put_nodes(const MedFile& file, const PreparedMesh& mesh, const std::map<std
   file.families(MED_NONE, MED_NODE, numbers);
 }
 
-/// Tetrahedra in groups of their label and of their material; faces of sets as triangles in theirs.
-/// @return the tetrahedra behind the triangles
+med_geometry_type wedge_type(const PreparedMesh& mesh, bool pyramid) {
+  return mesh.second_order() ? (pyramid ? MED_PYRA13 : MED_PENTA15) : (pyramid ? MED_PYRA5 : MED_PENTA6);
+}
+
+/// Elements in groups of their label and of their material; faces of sets as triangles in theirs.
+/// @return the elements behind the triangles
 std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mesh, const std::map<std::string, std::string>& short_names) {
   const SolverSets& sets = mesh.sets;
   std::vector<std::string> names;
-  std::vector<std::vector<int>> groups(mesh.tets.size());
+  std::vector<std::vector<int>> groups(mesh.elements());
   UniqueNames unique(kNameLength);
   for (const LabelGroup& g : mesh.labels) {
-    for (std::size_t t = g.begin; t < g.end; ++t) groups[t].push_back(static_cast<int>(names.size()));
+    mesh.each_element(g, [&](std::size_t t) { groups[t].push_back(static_cast<int>(names.size())); });
     names.push_back(unique.add(deck_name(g.name)));
   }
   if (!sets.placeholder_materials)
@@ -132,8 +139,25 @@ std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mes
       for (const int k : kMid) nodes.push_back(mesh.tet_mids[t][k] + 1);
   }
   const med_geometry_type tet = mesh.second_order() ? MED_TETRA10 : MED_TETRA4, triangle = mesh.second_order() ? MED_TRIA6 : MED_TRIA3;
-  file.cells(tet, MED_CELL, mesh.tets.size(), nodes);
-  file.families(tet, MED_CELL, numbers);
+  if (!mesh.tets.empty()) {
+    file.cells(tet, MED_CELL, mesh.tets.size(), nodes);
+    file.families(tet, MED_CELL, numbers);
+  }
+  for (const bool pyramids : {false, true}) {
+    numbers.clear(), nodes.clear();
+    for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
+      if (is_pyramid(mesh.wedges[w]) != pyramids) continue;
+      numbers.push_back(families.of(groups[mesh.tets.size() + w]));
+      const auto put_nodes = [&](const auto& of, const auto& order) {
+        for (const int k : order) nodes.push_back(of[k] + 1);
+      };
+      pyramids ? put_nodes(mesh.wedges[w], kPyramidCorner) : put_nodes(mesh.wedges[w], kWedgeCorner);
+      if (mesh.second_order()) pyramids ? put_nodes(mesh.wedge_mids[w], kPyramidMid) : put_nodes(mesh.wedge_mids[w], kWedgeMid);
+    }
+    if (numbers.empty()) continue;
+    file.cells(wedge_type(mesh, pyramids), MED_CELL, numbers.size(), nodes);
+    file.families(wedge_type(mesh, pyramids), MED_CELL, numbers);
+  }
 
   // A face that is in several sets is one triangle. Sets look at an interface from either side: the first one's winding stays.
   std::map<std::array<std::int32_t, 3>, std::size_t> place;
@@ -168,7 +192,7 @@ std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mes
   return behind;
 }
 
-/// A value for each tetrahedron, and for each triangle that of the one behind it (meshio wants one for all).
+/// A value for each element, and for each triangle that of the one behind it (meshio wants one for all).
 void put_field(const MedFile& file, const PreparedMesh& mesh, const std::string& name, const std::string& unit, const std::vector<double>& values,
                const std::vector<std::int32_t>& behind) {
   const std::string component = fields({name}, MED_SNAME_SIZE), in = fields({unit}, MED_SNAME_SIZE);
@@ -177,7 +201,13 @@ void put_field(const MedFile& file, const PreparedMesh& mesh, const std::string&
     file.check(MEDfieldValueWr(file.id(), name.c_str(), MED_NO_DT, MED_NO_IT, 0, MED_CELL, type, MED_FULL_INTERLACE, MED_ALL_CONSTITUENT,
                                static_cast<med_int>(of.size()), reinterpret_cast<const unsigned char*>(of.data())));
   };
-  put(mesh.second_order() ? MED_TETRA10 : MED_TETRA4, values);
+  if (!mesh.tets.empty()) put(mesh.second_order() ? MED_TETRA10 : MED_TETRA4, {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(mesh.tets.size())});
+  for (const bool pyramids : {false, true}) {
+    std::vector<double> of_wedges;
+    for (std::size_t w = 0; w < mesh.wedges.size(); ++w)
+      if (is_pyramid(mesh.wedges[w]) == pyramids) of_wedges.push_back(values[mesh.tets.size() + w]);
+    if (!of_wedges.empty()) put(wedge_type(mesh, pyramids), of_wedges);
+  }
   std::vector<double> on_triangles;
   for (const std::int32_t t : behind) on_triangles.push_back(values[t]);
   if (!behind.empty()) put(mesh.second_order() ? MED_TRIA6 : MED_TRIA3, on_triangles);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "meshio/element_nodes.h"
 #include "meshio/formats.h"
 #include "meshio/nastran_steps.h"
 #include "meshio/output_buffer.h"
@@ -15,7 +16,7 @@ namespace {
 class NastranFile : FixedFields {
  public:
   NastranFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets), steps_(out, mesh) {
-    if (mesh.points.size() > 99999999 || mesh.tets.size() > 99999999)
+    if (mesh.points.size() > 99999999 || mesh.elements() > 99999999)
       fail_output("Nastran's numbers have at most 8 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
   }
 
@@ -93,7 +94,7 @@ class NastranFile : FixedFields {
     for (const ElementMaterial& m : sets_.materials) {
       bool whole = m.label > 0 && m.label < 10000000;
       for (const LabelGroup& g : mesh_.labels)
-        if (g.label == m.label) whole = whole && g.end - g.begin == m.tets.size();
+        if (g.label == m.label) whole = whole && g.elements() == m.tets.size();
       ids.push_back(whole ? m.label : ++next);
     }
     if (next + static_cast<std::int64_t>(sets_.shells.size()) > 99999999)
@@ -106,7 +107,7 @@ class NastranFile : FixedFields {
     small(number);
     small(property);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (k == 6) out_ << "+       \n+       ";  // marked, as older readers want it
+      if (k == 6 || k == 14) out_ << "+       \n+       ";  // marked, as older readers want it
       small(static_cast<std::int64_t>(nodes[k]) + 1);
     }
     out_ << '\n';
@@ -114,7 +115,7 @@ class NastranFile : FixedFields {
 
   void elements() {
     ids_ = properties();
-    std::vector<std::int64_t> property(mesh_.tets.size(), 0);
+    std::vector<std::int64_t> property(mesh_.elements(), 0);
     for (std::size_t i = 0; i < ids_.size(); ++i)
       for (const std::int32_t t : sets_.materials[i].tets) property[t] = ids_[i];
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
@@ -122,10 +123,14 @@ class NastranFile : FixedFields {
       if (mesh_.second_order()) nodes.insert(nodes.end(), mesh_.tet_mids[t].begin(), mesh_.tet_mids[t].end());
       element("CTETRA  ", static_cast<std::int64_t>(t) + 1, property[t], nodes);
     }
+    for (std::size_t w = 0; w < mesh_.wedges.size(); ++w) {
+      const std::size_t e = mesh_.tets.size() + w;
+      element(is_pyramid(mesh_.wedges[w]) ? "CPYRAM  " : "CPENTA  ", static_cast<std::int64_t>(e) + 1, property[e], wedge_nodes_of(mesh_, w, WedgeOrder::exodus));
+    }
     shell_ = 0;
     for (const std::int64_t id : ids_) shell_ = std::max(shell_, id);
     for (const LabelGroup& g : mesh_.labels) shell_ = std::max<std::int64_t>(shell_, g.label);
-    std::int64_t number = static_cast<std::int64_t>(mesh_.tets.size()), id = shell_;
+    std::int64_t number = static_cast<std::int64_t>(mesh_.elements()), id = shell_;
     for (const ShellSet& s : sets_.shells) {
       ++id;
       for (const TetFace f : s.faces) {
@@ -222,7 +227,7 @@ class NastranFile : FixedFields {
 
   /// Nodes that follow another one at the same place: a rigid element each.
   void ties() {
-    std::int64_t& number = number_ = static_cast<std::int64_t>(mesh_.tets.size());
+    std::int64_t& number = number_ = static_cast<std::int64_t>(mesh_.elements());
     for (const ShellSet& s : sets_.shells) number += static_cast<std::int64_t>(s.faces.size());
     last_property_ = shell_ + static_cast<std::int64_t>(sets_.shells.size());
     for (const Tie& t : sets_.ties) {

@@ -232,11 +232,25 @@ void NastranSteps::vector(const char* card, std::int64_t set, std::int64_t node,
   out_ << '\n';
 }
 
-/// On faces of tetrahedra: G1 a corner of the face, G4 the corner that is not on it. A pressure above 0 presses inwards.
+/// On triangles of wedges: G1 a corner of the face; of pyramids: both corners of the base's edge, inwards. On faces of tetrahedra: G1 a corner of the face, G4 the corner that is not on it. A pressure above 0 presses inwards.
 void NastranSteps::pressure(std::int64_t set, const Pressure& p) {
   for (const FaceSet& s : sets_.surfaces) {
     if (s.name != p.set) continue;
     for (const TetFace f : s.faces) {
+      if (static_cast<std::size_t>(f.tet) >= mesh_.tets.size()) {
+        const auto& wedge = mesh_.wedges[static_cast<std::size_t>(f.tet) - mesh_.tets.size()];
+        out_ << "PLOAD4* ";
+        large(set);
+        large(static_cast<std::int64_t>(f.tet) + 1);
+        large(p.mpa);
+        padded("", 16);
+        out_ << "\n*       ";
+        padded("", 32);
+        large(static_cast<std::int64_t>(wedge[f.face == 0 ? 0 : is_pyramid(wedge) ? 4 : 3]) + 1);
+        if (is_pyramid(wedge)) large(static_cast<std::int64_t>(wedge[f.face == 0 ? 1 : 3]) + 1);
+        out_ << '\n';
+        continue;
+      }
       const auto& tet = mesh_.tets[f.tet];
       const auto& face = kTetFaces[f.face];
       std::int32_t opposite = -1;

@@ -116,10 +116,13 @@ void take_points(const std::vector<Vec3>& points, const std::string& path, Prepa
     check(t, points.size(), path);
     for (const std::int32_t v : t) number[v] = 0;
   }
-  for (const auto& t : mesh.tet_mids) {
-    check(t, points.size(), path);
-    for (const std::int32_t v : t) number[v] = 0;
-  }
+  const auto use = [&](const auto& elements) {
+    for (const auto& t : elements) {
+      check(t, points.size(), path);
+      for (const std::int32_t v : t) number[v] = 0;
+    }
+  };
+  use(mesh.tet_mids), use(mesh.wedges), use(mesh.wedge_mids);
   mesh.points.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (number[i] < 0) continue;
@@ -135,6 +138,10 @@ void take_points(const std::vector<Vec3>& points, const std::string& path, Prepa
   for (auto& t : mesh.tets)
     for (std::int32_t& v : t) v = number[v];
   for (auto& t : mesh.tet_mids)
+    for (std::int32_t& v : t) v = number[v];
+  for (auto& t : mesh.wedges)
+    for (std::int32_t& v : t) v = number[v];
+  for (auto& t : mesh.wedge_mids)
     for (std::int32_t& v : t) v = number[v];
 }
 
@@ -152,6 +159,11 @@ void find_triangle_mids(const std::string& path, PreparedMesh& mesh) {
     for (int k = 0; k < 6; ++k) {
       const std::int32_t a = mesh.tets[t][kTetEdges[k][0]], b = mesh.tets[t][kTetEdges[k][1]];
       if (on_triangle[a] && on_triangle[b]) edges.push_back({std::min(a, b), std::max(a, b), mesh.tet_mids[t][k]});
+    }
+  for (std::size_t w = 0; w < mesh.wedges.size(); ++w)
+    for (int k = 0; k < 6; ++k) {  // those of its triangles
+      const std::int32_t a = mesh.wedges[w][kWedgeEdges[k][0]], b = mesh.wedges[w][kWedgeEdges[k][1]];
+      if (on_triangle[a] && on_triangle[b]) edges.push_back({std::min(a, b), std::max(a, b), mesh.wedge_mids[w][k]});
     }
   std::sort(edges.begin(), edges.end(), less);
   mesh.triangle_mids.resize(mesh.triangles.size());
@@ -209,18 +221,19 @@ PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
 }
 
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path) {
-  if (mesh.tets.empty())
+  if (mesh.elements() == 0)
     throw Error(ErrorKind::no_result, "the volume mesh is empty", path,
                 "check the labels that were requested");
-  if (mesh.tets.size() != mesh.labels.size())
-    fail_internal("a mesh to be written has " + std::to_string(mesh.tets.size()) + " tets and " +
+  if (mesh.elements() != mesh.labels.size())
+    fail_internal("a mesh to be written has " + std::to_string(mesh.elements()) + " elements and " +
                       std::to_string(mesh.labels.size()) + " labels",
                   path);
   PreparedMesh prepared;
   prepared.space = space_name(options.space);
   const Grouping<Label> groups(mesh.tets.size(), [&](std::size_t i) { return mesh.labels[i]; });
-  if (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size())
-    fail_internal("a mesh to be written has mid-side nodes for some of its tets only", path);
+  const bool some = (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size()) || (!mesh.wedge_mid.empty() && mesh.wedge_mid.size() != mesh.wedges.size());
+  if (some || (!mesh.tets.empty() && !mesh.wedges.empty() && mesh.mid.empty() != mesh.wedge_mid.empty()))
+    fail_internal("a mesh to be written has mid-side nodes for some of its elements only", path);
   prepared.tets.reserve(mesh.tets.size());
   for (const std::size_t i : groups.order) prepared.tets.push_back(mesh.tets[i]);
   if (!mesh.mid.empty())
@@ -228,12 +241,30 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
   std::vector<InterfaceTriangle> triangles = mesh.faces;
   for (InterfaceTriangle& t : triangles)
     if (wants_flip(t)) flip(t);
+  const Grouping<Label> wedge_groups(mesh.wedges.size(), [&](std::size_t i) { return mesh.labels[mesh.tets.size() + i]; });
+  for (const std::size_t i : wedge_groups.order) prepared.wedges.push_back(mesh.wedges[i]);
+  if (!mesh.wedge_mid.empty())
+    for (const std::size_t i : wedge_groups.order) prepared.wedge_mids.push_back(mesh.wedge_mid[i]);
   std::set<Label> labels = labels_of(triangles);
   labels.insert(groups.keys.begin(), groups.keys.end());
+  labels.insert(wedge_groups.keys.begin(), wedge_groups.keys.end());
   const LabelNames names(options.labels, labels);
-  for (std::size_t g = 0; g < groups.keys.size(); ++g)
-    prepared.labels.push_back(
-        {groups.keys[g], groups.begins[g], groups.begins[g + 1], names[groups.keys[g]]});
+  std::set<Label> filled(groups.keys.begin(), groups.keys.end());
+  filled.insert(wedge_groups.keys.begin(), wedge_groups.keys.end());
+  for (const Label label : filled) {
+    LabelGroup group;
+    group.label = label;
+    group.name = names[label];
+    const auto range = [&](const Grouping<Label>& of, std::size_t& begin, std::size_t& end) {
+      const auto at = std::lower_bound(of.keys.begin(), of.keys.end(), label);
+      const auto g = static_cast<std::size_t>(at - of.keys.begin());
+      begin = of.begins[g];
+      end = at != of.keys.end() && *at == label ? of.begins[g + 1] : begin;
+    };
+    range(groups, group.begin, group.end);
+    range(wedge_groups, group.wedge_begin, group.wedge_end);
+    prepared.labels.push_back(std::move(group));
+  }
   group_triangles(std::move(triangles), names, prepared);
   take_points(mesh.points, path, prepared);
   if (prepared.second_order()) find_triangle_mids(path, prepared);
@@ -245,20 +276,13 @@ PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& opt
   named.labels = model.labels;
   PreparedMesh prepared = prepare_volume(model.mesh, named, path);
   // The sets count tets and points as the model does.
-  if (prepared.points.size() != model.mesh.points.size() || prepared.tets != model.mesh.tets)
+  if (prepared.points.size() != model.mesh.points.size() || prepared.tets != model.mesh.tets || prepared.wedges != model.mesh.wedges)
     fail_internal("a solver model to be written is not ordered by label, or has unused points", path);
   prepared.sets = model.sets;
   return prepared;
 }
 
-std::array<std::int32_t, 6> PreparedMesh::outward_face(TetFace f) const {
-  const auto& corner = kTetFaces[f.face];
-  const auto& mid = kTetFaceMids[f.face];
-  std::array<std::int32_t, 6> nodes = {tets[f.tet][corner[0]], tets[f.tet][corner[2]], tets[f.tet][corner[1]], -1, -1, -1};
-  if (second_order())
-    for (int k = 0; k < 3; ++k) nodes[3 + k] = tet_mids[f.tet][mid[2 - k]];
-  return nodes;
-}
+std::array<std::int32_t, 6> PreparedMesh::outward_face(TetFace f) const { return outward_face_of(f, tets, tet_mids, wedges, wedge_mids); }
 
 std::string UniqueNames::add(std::string name) {
   if (name.size() > max_length_) name.resize(max_length_);

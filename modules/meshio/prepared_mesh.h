@@ -10,11 +10,14 @@
 
 namespace stackmesh {
 
-/// Tets of one label: [begin, end) of PreparedMesh::tets.
+/// Tets of one label: [begin, end) of PreparedMesh::tets. And its wedges: [wedge_begin, wedge_end) of PreparedMesh::wedges.
 struct LabelGroup {
   Label label = 0;
   std::size_t begin = 0, end = 0;
   std::string name;  ///< unique in the mesh
+  std::size_t wedge_begin = 0, wedge_end = 0;
+
+  std::size_t elements() const { return end - begin + wedge_end - wedge_begin; }
 };
 
 /// Triangles of one pair of labels: [begin, end) of PreparedMesh::triangles.
@@ -31,6 +34,8 @@ struct PreparedMesh {
   std::vector<InterfaceTriangle> triangles;
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 6>> tet_mids;           ///< second order: mid-side nodes of the tets (kTetEdges)
+  std::vector<std::array<std::int32_t, 6>> wedges;             ///< as TetMesh has them; elements are counted through, tets first
+  std::vector<std::array<std::int32_t, 9>> wedge_mids;         ///< second order
   std::vector<std::array<std::int32_t, 3>> triangle_mids;  ///< second order: of the triangles, each behind its corner
   std::vector<PairGroup> pairs;    ///< ascending (below, above)
   std::vector<LabelGroup> labels;  ///< ascending; empty for a surface
@@ -38,8 +43,15 @@ struct PreparedMesh {
   std::string space;               ///< "LPS", "RAS" or ""
   SolverSets sets;                 ///< of a solver model; for a deck of a mere mesh by add_interface_sets()
 
-  bool second_order() const { return !tet_mids.empty(); }
-  /// Corners and mid-side nodes of a tet's face, outward (from inside anticlockwise turned round).
+  bool second_order() const { return !tet_mids.empty() || !wedge_mids.empty(); }
+  std::size_t elements() const { return tets.size() + wedges.size(); }
+  /// Visits the elements of a label: its tets, then its wedges.
+  template <class Visit>
+  void each_element(const LabelGroup& g, Visit visit) const {
+    for (std::size_t t = g.begin; t < g.end; ++t) visit(t);
+    for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w) visit(tets.size() + w);
+  }
+  /// Corners and mid-side nodes of an element's face, outward (from inside anticlockwise turned round).
   std::array<std::int32_t, 6> outward_face(TetFace f) const;
 
   /// "SPACE=LPS", or "SPACE=" of nothing: empty.
@@ -54,7 +66,7 @@ PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path);
 PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& options, const std::string& path);
 
-/// For each triangle the tet of its label `below` (where there is none, `above`) that has it as a face.
+/// For each triangle the element of its label `below` (where there is none, `above`) that has it as a face.
 /// @param both_sides every label of a triangle but 0 must have such a tet; else one of them (parts have nodes of their own)
 /// @throws Error(internal) where that is not so
 std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides);
@@ -65,7 +77,7 @@ void add_interface_sets(PreparedMesh& mesh);
 /// The nodes of a set. @throws Error(internal) where there is no such set
 const std::vector<std::int32_t>& nodes_of(const SolverSets& sets, const std::string& name);
 
-/// For each tet the place of its material in SolverSets::materials.
+/// For each element the place of its material in SolverSets::materials.
 std::vector<std::int32_t> material_of_tets(const PreparedMesh& mesh);
 
 /// The first static step; null where there is none.

@@ -176,6 +176,20 @@ void RawMesh::add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
   triangle_cell.push_back(static_cast<std::int32_t>(cells));
 }
 
+void RawMesh::add_wedge(const std::array<std::int64_t, 15>& nodes, bool second_order) {
+  const auto index = [](std::int64_t i) { return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i); };
+  auto& corners = wedges.emplace_back();
+  for (int k = 0; k < 6; ++k) corners[k] = index(nodes[k]);
+  wedge_cell.push_back(static_cast<std::int32_t>(cells));
+  if (!second_order) return;
+  has_quadratic = true;
+  std::array<std::int32_t, 9> linear;
+  linear.fill(-1);
+  wedge_midside.resize(wedges.size() - 1, linear);
+  auto& mid = wedge_midside.emplace_back();
+  for (int k = 0; k < 9; ++k) mid[k] = index(nodes[6 + k]);
+}
+
 void RawMesh::add_polygon(const std::int64_t* nodes, std::size_t count) {
   if (count > 3) ++polygons;
   for (std::size_t i = 1; i + 1 < count; ++i) add_triangle(nodes[0], nodes[i], nodes[i + 1]);
@@ -215,6 +229,28 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
         midside.resize(tets.size() - 1, {-1, -1, -1, -1, -1, -1});
         midside.push_back({index(n[4]), index(n[5]), index(n[6]), index(n[7]), index(n[8]), index(n[9])});
       }
+      break;
+    }
+    case wedge: case quadratic_wedge: {
+      const bool second = type == quadratic_wedge;
+      if (count != (second ? 15u : 6u)) {
+        ++unsupported[kind_of(type)];
+        break;
+      }
+      std::array<std::int64_t, 15> nodes = {};
+      std::copy(n, n + count, nodes.begin());
+      add_wedge(nodes, second);
+      break;
+    }
+    case pyramid: case quadratic_pyramid: {
+      const bool second = type == quadratic_pyramid;
+      if (count != (second ? 13u : 5u)) {
+        ++unsupported[kind_of(type)];
+        break;
+      }
+      std::array<std::int64_t, 15> nodes = {n[0], n[3], n[4], n[1], n[2], n[4]};
+      if (second) nodes = {n[0], n[3], n[4], n[1], n[2], n[4], n[8], n[12], n[9], n[6], n[11], n[10], n[5], n[7], n[4]};
+      add_wedge(nodes, second);
       break;
     }
     default: ++unsupported[kind_of(type)];

@@ -82,6 +82,9 @@ struct RawMesh {
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 6>> midside;  ///< as MeshFile; the first is -1 for a linear tet
   std::vector<std::int32_t> tet_cell;
+  std::vector<std::array<std::int32_t, 6>> wedges;         ///< and pyramids, as TetMesh; either way round
+  std::vector<std::array<std::int32_t, 9>> wedge_midside;  ///< the first is -1 for a linear one
+  std::vector<std::int32_t> wedge_cell;
   std::int64_t cells = 0;
 
   struct Array {
@@ -115,6 +118,7 @@ struct RawMesh {
   void note_space(std::string_view comment);
 
  private:
+  void add_wedge(const std::array<std::int64_t, 15>& nodes, bool second_order);
   void add_triangle(std::int64_t a, std::int64_t b, std::int64_t c);
 };
 
@@ -122,7 +126,7 @@ struct RawMesh {
 namespace vtk_cell {
 inline constexpr int vertex = 1, poly_vertex = 2, line = 3, poly_line = 4, triangle = 5, strip = 6, polygon = 7,
                      quad = 9, tet = 10, quadratic_edge = 21, quadratic_triangle = 22, quadratic_quad = 23,
-                     quadratic_tet = 24;
+                     wedge = 13, pyramid = 14, quadratic_tet = 24, quadratic_wedge = 26, quadratic_pyramid = 27;
 }
 
 void read_stl(MeshBytes& in, RawMesh& mesh);

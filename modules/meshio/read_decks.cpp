@@ -16,8 +16,9 @@ int vtk_type_of(const std::string& type) {
   if (begins("c3d10") || begins("dc3d10")) return vtk_cell::quadratic_tet;
   if (begins("c3d4") || begins("dc3d4")) return vtk_cell::tet;
   if (begins("c3d8") || begins("dc3d8") || begins("c3d20") || begins("dc3d20") || begins("c3d27")) return 12;
-  if (begins("c3d6") || begins("dc3d6") || begins("c3d15") || begins("dc3d15") || begins("sc6")) return 13;
-  if (begins("c3d5") || begins("c3d13")) return 14;
+  if (begins("c3d6") || begins("dc3d6") || begins("sc6")) return vtk_cell::wedge;
+  if (begins("c3d15") || begins("dc3d15")) return vtk_cell::quadratic_wedge;
+  if (begins("c3d5")) return vtk_cell::pyramid;
   if (begins("sc8")) return 12;
   if (begins("stri3") || begins("s3") || begins("m3d3") || begins("sfm3d3") || begins("r3d3") || begins("cps3") || begins("cpe3") || begins("ds3") ||
       begins("dc2d3"))
@@ -30,6 +31,8 @@ int vtk_type_of(const std::string& type) {
 
 std::size_t node_count(int vtk_type) {
   using namespace vtk_cell;
+  if (vtk_type == wedge || vtk_type == pyramid) return vtk_type == wedge ? 6 : 5;
+  if (vtk_type == quadratic_wedge) return 15;
   return vtk_type == tet || vtk_type == quad ? 4 : vtk_type == triangle ? 3 : vtk_type == quadratic_tet ? 10 : vtk_type == quadratic_triangle ? 6 : 8;
 }
 
@@ -152,7 +155,7 @@ class DeckReader {
     if (type_ == 0) return;
     for (const std::string_view f : fields_)
       if (!f.empty()) open_.push_back(whole(f, "number of an element"));
-    const std::size_t nodes = type_ == 12 || type_ == 13 || type_ == 14 ? 0 : node_count(type_);
+    const std::size_t nodes = type_ == 12 ? 0 : node_count(type_);
     if (nodes == 0) {
       if (open_.size() >= 2) mesh_.add_cell(type_, open_.data() + 1, open_.size() - 1), add_id();
       open_.clear();

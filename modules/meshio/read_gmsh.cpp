@@ -162,12 +162,19 @@ class GmshReader {
   }
 
   void add_element(std::int64_t gmsh, const ElementType& type, const std::int64_t* nodes, std::int64_t physical, std::int64_t entity) {
-    std::int64_t n[32];
+    std::int64_t n[32] = {};
     for (int k = 0; k < type.nodes; ++k) {
       const auto it = node_of_.find(nodes[k]);
       n[k] = it == node_of_.end() ? -1 : it->second;
     }
     if (gmsh == 11) std::swap(n[8], n[9]);  // Gmsh's last two edges are 23 and 13
+    static constexpr int kWedge[15] = {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11};  // Gmsh sorts edges by their ends
+    static constexpr int kPyramid[13] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12};
+    if (gmsh == 18 || gmsh == 19) {
+      std::int64_t sorted[15];
+      for (int k = 0; k < type.nodes; ++k) sorted[k] = n[(gmsh == 18 ? kWedge : kPyramid)[k]];
+      std::copy(sorted, sorted + type.nodes, n);
+    }
     mesh_.add_cell(type.vtk, n, gmsh == 10 ? 8 : static_cast<std::size_t>(type.nodes));
     physical_.push_back(static_cast<double>(physical));
     entity_.push_back(static_cast<double>(entity));

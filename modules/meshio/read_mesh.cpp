@@ -68,20 +68,22 @@ class MeshFinisher {
     out_.points = std::move(raw_.points);
     if (!raw_.space.empty()) out_.space = raw_.space == "LPS" ? WorldSpace::lps : WorldSpace::ras;
     find_labels();
-    if (raw_.tets.empty()) take_surface();
+    if (!is_volume()) take_surface();
     else take_volume();
-    if (!out_.tets.empty()) return std::move(out_);
+    if (!out_.tets.empty() || !out_.wedges.empty()) return std::move(out_);
     if (out_.triangles.empty()) fail_input("all triangles are degenerate or background", raw_.path, "give a surface or a volume mesh");
     return std::move(out_);
   }
 
  private:
+  bool is_volume() const { return !raw_.tets.empty() || !raw_.wedges.empty(); }
+
   void check() const {
     for (const auto& [kind, count] : raw_.unsupported)
       fail_input("the mesh has " + std::to_string(count) + " " + kind, raw_.path,
-                 "triangles, quads, polygons and tetrahedra of 4 or 10 nodes are judged: split the others into tetrahedra");
+                 "triangles, quads, polygons, tetrahedra, wedges and pyramids of first or second order are judged: split the others into tetrahedra");
     if (raw_.cells > 2000000000) fail_input("the mesh has more than 2,000,000,000 cells", raw_.path, "split it");
-    if (raw_.triangles.empty() && raw_.tets.empty()) fail_input("the mesh has no triangle and no tetrahedron", raw_.path, "give a surface or a volume mesh");
+    if (raw_.triangles.empty() && !is_volume()) fail_input("the mesh has no triangle and no tetrahedron", raw_.path, "give a surface or a volume mesh");
     for (std::size_t p = 0; p < raw_.points.size(); ++p) {
       const Vec3& v = raw_.points[p];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
@@ -101,6 +103,14 @@ class MeshFinisher {
       for (const std::int32_t v : raw_.tets[t]) need("tet", t, v);
     if (raw_.has_quadratic && raw_.midside.size() != raw_.tets.size())
       fail_input("tetrahedra of 4 and of 10 nodes are mixed", raw_.path, "write the mesh in one order");
+    if (raw_.has_quadratic && raw_.wedge_midside.size() != raw_.wedges.size())
+      fail_input("elements of first and of second order are mixed", raw_.path, "write the mesh in one order");
+    for (std::size_t w = 0; w < raw_.wedges.size(); ++w)
+      for (const std::int32_t v : raw_.wedges[w]) need("wedge", w, v);
+    for (std::size_t w = 0; w < raw_.wedge_midside.size(); ++w) {
+      if (raw_.wedge_midside[w][0] < 0 && raw_.wedge_midside[w][7] < 0) fail_input("elements of first and of second order are mixed", raw_.path, "write the mesh in one order");
+      for (const std::int32_t v : raw_.wedge_midside[w]) need("wedge", w, v);
+    }
     for (std::size_t t = 0; t < raw_.midside.size(); ++t) {
       if (raw_.midside[t][0] < 0 && raw_.midside[t][5] < 0) fail_input("tetrahedra of 4 and of 10 nodes are mixed", raw_.path, "write the mesh in one order");
       for (const std::int32_t v : raw_.midside[t]) need("tet", t, v);
@@ -116,7 +126,12 @@ class MeshFinisher {
   }
 
   /// The cells whose labels count: tets, else triangles.
-  const std::vector<std::int32_t>& judged_cells() const { return raw_.tets.empty() ? raw_.triangle_cell : raw_.tet_cell; }
+  std::vector<std::int32_t> judged_cells() const {
+    if (!is_volume()) return raw_.triangle_cell;
+    std::vector<std::int32_t> cells = raw_.tet_cell;
+    cells.insert(cells.end(), raw_.wedge_cell.begin(), raw_.wedge_cell.end());
+    return cells;
+  }
 
   bool all_zero(const RawMesh::Array& a) const {
     for (const std::int32_t c : judged_cells())
@@ -148,7 +163,7 @@ class MeshFinisher {
       out_.label_source = LabelSource::array;
       out_.label_array = labels_->name;
       for (const RawMesh::Name& n : raw_.names)
-        if (n.dimension == (raw_.tets.empty() ? 2 : 3) && labels_->name == "gmsh:physical" && n.number >= -2147483647 && n.number <= 2147483647)
+        if (n.dimension == (is_volume() ? 3 : 2) && labels_->name == "gmsh:physical" && n.number >= -2147483647 && n.number <= 2147483647)
           out_.names.push_back({static_cast<Label>(n.number), n.text});
       sort_names();
     } else if (std::any_of(raw_.set_of_cell.begin(), raw_.set_of_cell.end(), [](std::int32_t s) { return s >= 0; })) {
@@ -250,24 +265,39 @@ class MeshFinisher {
     if (raw_.quadratic_triangles > 0) out_.notes.push_back("triangles of 6 nodes are judged by their corners");
   }
 
-  void take_volume() {
-    for (const std::int32_t cell : raw_.tet_cell) out_.tet_labels.push_back(label_of_cell(cell));
-    out_.tets = std::move(raw_.tets);
-    out_.midside = std::move(raw_.midside);
-    const auto background = static_cast<std::size_t>(std::count(out_.tet_labels.begin(), out_.tet_labels.end(), 0));
-    if (background > 0) {
-      std::size_t kept = 0;
-      for (std::size_t t = 0; t < out_.tets.size(); ++t) {
-        if (out_.tet_labels[t] == 0) continue;
-        out_.tets[kept] = out_.tets[t];
-        if (!out_.midside.empty()) out_.midside[kept] = out_.midside[t];
-        out_.tet_labels[kept++] = out_.tet_labels[t];
-      }
-      out_.tets.resize(kept), out_.tet_labels.resize(kept);
-      if (!out_.midside.empty()) out_.midside.resize(kept);
-      out_.notes.push_back(std::to_string(background) + " tets of label 0 are background and left out");
-      if (kept == 0) fail_input("all tetrahedra have label 0, the background", raw_.path, "name another array with --label-array");
+  /// Formats (and programs) differ in which way wedges are wound: all are turned where most are negative.
+  void turn_wedges(TetMesh& mesh) const {
+    std::size_t negative = 0;
+    for (const auto& w : mesh.wedges) {
+      const Vec3 o = out_.points[w[0]], a = out_.points[w[1]] - o, b = out_.points[w[2]] - o;
+      const Vec3 up = 0.5 * (out_.points[w[3]] + out_.points[w[4]]) - 0.5 * (out_.points[w[0]] + out_.points[w[1]]);
+      negative += dot(up, cross(a, b)) < 0;
     }
+    if (2 * negative <= mesh.wedges.size()) return;
+    for (std::size_t w = 0; w < mesh.wedges.size(); ++w)
+      if (!is_pyramid(mesh.wedges[w])) turn_wedge_round(mesh, w);
+  }
+
+  void take_volume() {
+    TetMesh mesh;
+    for (const std::int32_t cell : judged_cells()) mesh.labels.push_back(label_of_cell(cell));
+    mesh.tets = std::move(raw_.tets);
+    mesh.mid = std::move(raw_.midside);
+    mesh.wedges = std::move(raw_.wedges);
+    mesh.wedge_mid = std::move(raw_.wedge_midside);
+    turn_wedges(mesh);
+    const auto background = static_cast<std::size_t>(std::count(mesh.labels.begin(), mesh.labels.end(), 0));
+    if (background > 0) {
+      const bool wedges = !mesh.wedges.empty();
+      relabel(mesh, [](Label l) { return l; });
+      out_.notes.push_back(std::to_string(background) + (wedges ? " elements" : " tets") + " of label 0 are background and left out");
+      if (mesh.elements() == 0) fail_input("all tetrahedra have label 0, the background", raw_.path, "name another array with --label-array");
+    }
+    out_.tets = std::move(mesh.tets);
+    out_.midside = std::move(mesh.mid);
+    out_.wedges = std::move(mesh.wedges);
+    out_.wedge_midside = std::move(mesh.wedge_mid);
+    out_.tet_labels = std::move(mesh.labels);
     if (!below_ || !above_) return;
     const std::set<Label> filled(out_.tet_labels.begin(), out_.tet_labels.end());
     for (std::size_t t = 0; t < raw_.triangles.size(); ++t) {
@@ -412,6 +442,8 @@ TetMesh tet_mesh_of(const MeshFile& file) {
   mesh.tets = file.tets;
   mesh.labels = file.tet_labels;
   mesh.mid = file.midside;
+  mesh.wedges = file.wedges;
+  mesh.wedge_mid = file.wedge_midside;
   mesh.faces = file.triangles.empty() ? faces_of_tets(mesh) : file.triangles;
   return mesh;
 }
@@ -422,17 +454,22 @@ std::vector<InterfaceTriangle> faces_of_tets(const TetMesh& mesh) {
     bool even;
   };
   static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};  // outwards
+  static constexpr int kOfWedge[4][3] = {{0, 2, 1}, {3, 4, 5}, {1, 2, 4}, {2, 0, 3}};  // the last two of a pyramid
   const auto each = [&](auto visit) {
+    const auto side = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::size_t element) {
+      std::int32_t v[3] = {a, b, c};
+      bool even = true;
+      const auto order = [&](int i, int j) {
+        if (v[i] > v[j]) std::swap(v[i], v[j]), even = !even;
+      };
+      order(0, 1), order(1, 2), order(0, 1);
+      visit(v[0], Face{v[1], v[2], static_cast<std::int32_t>(element), even});
+    };
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-      for (const auto& f : kFaces) {
-        std::int32_t v[3] = {mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]]};
-        bool even = true;
-        const auto order = [&](int i, int j) {
-          if (v[i] > v[j]) std::swap(v[i], v[j]), even = !even;
-        };
-        order(0, 1), order(1, 2), order(0, 1);
-        visit(v[0], Face{v[1], v[2], static_cast<std::int32_t>(t), even});
-      }
+      for (const auto& f : kFaces) side(mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]], t);
+    for (std::size_t w = 0; w < mesh.wedges.size(); ++w)
+      for (int f = 0; f < (is_pyramid(mesh.wedges[w]) ? 4 : 2); ++f)
+        side(mesh.wedges[w][kOfWedge[f][0]], mesh.wedges[w][kOfWedge[f][1]], mesh.wedges[w][kOfWedge[f][2]], mesh.tets.size() + w);
   };
   std::vector<std::int64_t> start(mesh.points.size() + 1, 0);
   each([&](std::int32_t low, const Face&) { ++start[low + 1]; });
@@ -441,7 +478,7 @@ std::vector<InterfaceTriangle> faces_of_tets(const TetMesh& mesh) {
   each([&](std::int32_t low, const Face& face) { faces[start[low]++] = face; });
 
   // start[low] is now where the faces of `low` end.
-  std::vector<signed char> against(mesh.tets.size(), 0);
+  std::vector<signed char> against(mesh.elements(), 0);
   const auto groups = [&](auto visit) {
     std::int64_t begin = 0;
     for (std::size_t low = 0; low < mesh.points.size(); ++low) {

@@ -21,7 +21,7 @@ enum class LabelSource {
 };
 
 /// A mesh of any program, as its file holds it: mm are not checked, points keep their order (but see
-/// `merged_points`), cells of other kinds than triangles and tets are gone.
+/// `merged_points`), cells of other kinds than triangles, tets, wedges and pyramids are gone.
 struct MeshFile {
   std::string path, format;  ///< format: "stl", "ply", "obj", "off", "vtp", "vtk", "vtu", "msh", "inp" or "mesh"
   std::vector<Vec3> points;
@@ -31,7 +31,9 @@ struct MeshFile {
   std::vector<Label> behind;  ///< of a file with tets, per triangle: a label that it names and no tet has (a void), taken for background; 0: none
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on kTetEdges; empty: linear
-  std::vector<Label> tet_labels;                     ///< one per tet
+  std::vector<std::array<std::int32_t, 6>> wedges;         ///< and pyramids, as TetMesh has them
+  std::vector<std::array<std::int32_t, 9>> wedge_midside;  ///< of 15-node wedges and 13-node pyramids, on kWedgeEdges; empty: linear
+  std::vector<Label> tet_labels;                     ///< one per element: tets, then wedges
   std::vector<LabelInfo> names;                      ///< of labels the file names, ascending by number
   LabelSource label_source = LabelSource::none;
   std::string label_array;                ///< name of the array the labels were read from, "" for none
@@ -51,7 +53,7 @@ struct MeshReadOptions {
 /// True for .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh, in any letter case.
 bool is_readable_mesh(const std::string& path);
 
-/// Reads triangles and tetrahedra (of 4 or 10 nodes; quads and polygons become triangles, said in `notes`)
+/// Reads triangles, tetrahedra, wedges and pyramids (linear or with mid-side nodes; quads and polygons become triangles, said in `notes`)
 /// from a mesh file of any program; the format is that of the ending. STL: binary and text; PLY: binary and
 /// text; VTP, VTU: text, base64 and raw, appended or not, also zlib-compressed; VTK: legacy 2.0 to 5.1, text and binary; MSH: Gmsh 2.2
 /// and 4.1, text and binary; INP: Abaqus and CalculiX; MESH: Medit text. Memory is bounded by the size of the

@@ -5,16 +5,31 @@
 #include <string>
 #include <vector>
 
+#include "meshio/element_nodes.h"
 #include "meshio/formats.h"
 #include "meshio/output_buffer.h"
 
 namespace stackmesh {
 namespace {
 
-constexpr std::int32_t kTriangle = 5, kTet = 10, kTriangle6 = 22, kTet10 = 24;  // VTK's cell types
+// VTK's cell types
+constexpr std::int32_t kTriangle = 5, kTet = 10, kWedge = 13, kPyramid = 14, kTriangle6 = 22, kTet10 = 24, kWedge15 = 26, kPyramid13 = 27;
 
-std::int32_t cell_type(const PreparedMesh& mesh, bool tet) {
-  return mesh.second_order() ? (tet ? kTet10 : kTriangle6) : (tet ? kTet : kTriangle);
+/// Of a cell: the elements, then the triangles.
+std::int32_t cell_type(const PreparedMesh& mesh, std::size_t cell) {
+  const bool second = mesh.second_order();
+  if (cell < mesh.tets.size()) return second ? kTet10 : kTet;
+  if (cell >= mesh.elements()) return second ? kTriangle6 : kTriangle;
+  return is_pyramid(mesh.wedges[cell - mesh.tets.size()]) ? (second ? kPyramid13 : kPyramid) : (second ? kWedge15 : kWedge);
+}
+
+/// VTK's wedges, of second order too, have the first triangle's normal point away from the second: as if the first two corners of each changed places.
+std::vector<std::int32_t> vtk_wedge(const PreparedMesh& mesh, std::size_t wedge) {
+  std::vector<std::int32_t> n = wedge_nodes_of(mesh, wedge, WedgeOrder::abaqus);
+  if (is_pyramid(mesh.wedges[wedge])) return n;
+  for (const auto& [a, b] : {std::pair(0, 1), std::pair(3, 4), std::pair(7, 8), std::pair(10, 11), std::pair(12, 13)})
+    if (static_cast<std::size_t>(b) < n.size()) std::swap(n[a], n[b]);
+  return n;
 }
 
 /// A VTK XML file whose arrays follow the header as raw bytes.
@@ -96,23 +111,24 @@ class XmlFile {
   std::uint64_t offset_ = 0;
 };
 
-/// Cell data of the tets followed by the triangles. A triangle has the label of the tet behind it (of two, that of `below`; a void
+/// Cell data of the elements followed by the triangles. A triangle has the label of the tet behind it (of two, that of `below`; a void
 /// has none), so that a viewer, which draws both, shows one colour.
 struct CellLabels {
   std::vector<std::int32_t> label, below, above;
 
   explicit CellLabels(const PreparedMesh& mesh) {
-    const std::size_t cells = mesh.tets.size() + mesh.triangles.size();
+    const std::size_t cells = mesh.elements() + mesh.triangles.size();
     label.reserve(cells);
     for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.end - g.begin, g.label);
+    for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.wedge_end - g.wedge_begin, g.label);
     if (mesh.sets.parts.empty()) {
       const auto has_tets = [&](Label l) { return std::any_of(mesh.labels.begin(), mesh.labels.end(), [&](const LabelGroup& g) { return g.label == l; }); };
-      for (const PairGroup& g : mesh.pairs) label.insert(label.end(), g.end - g.begin, g.below != 0 && (g.above == 0 || mesh.tets.empty() || has_tets(g.below)) ? g.below : g.above);
+      for (const PairGroup& g : mesh.pairs) label.insert(label.end(), g.end - g.begin, g.below != 0 && (g.above == 0 || mesh.elements() == 0 || has_tets(g.below)) ? g.below : g.above);
     } else {  // each part has its own side
       for (const TetFace f : face_owners(mesh, false)) label.push_back(label[f.tet]);
     }
-    below.assign(mesh.tets.size(), -1);
-    above.assign(mesh.tets.size(), -1);
+    below.assign(mesh.elements(), -1);
+    above.assign(mesh.elements(), -1);
     for (const PairGroup& g : mesh.pairs) {
       below.insert(below.end(), g.end - g.begin, g.below);
       above.insert(above.end(), g.end - g.begin, g.above);
@@ -120,7 +136,7 @@ struct CellLabels {
   }
 };
 
-/// Nodes of the tets followed by those of the triangles, and where each cell ends.
+/// Nodes of the elements followed by those of the triangles, and where each cell ends.
 struct Connectivity {
   std::vector<std::int64_t> ends;
   std::vector<std::int32_t> corners;
@@ -131,6 +147,11 @@ struct Connectivity {
     for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
       corners.insert(corners.end(), mesh.tets[i].begin(), mesh.tets[i].end());
       if (mesh.second_order()) corners.insert(corners.end(), mesh.tet_mids[i].begin(), mesh.tet_mids[i].end());
+      ends.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+    for (std::size_t i = 0; i < mesh.wedges.size(); ++i) {
+      const std::vector<std::int32_t> nodes = vtk_wedge(mesh, i);
+      corners.insert(corners.end(), nodes.begin(), nodes.end());
       ends.push_back(static_cast<std::int64_t>(corners.size()));
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -153,7 +174,7 @@ struct CellFields {
 
   explicit CellFields(const PreparedMesh& mesh) {
     const SolverSets& sets = mesh.sets;
-    const std::size_t cells = mesh.tets.size() + mesh.triangles.size();
+    const std::size_t cells = mesh.elements() + mesh.triangles.size();
     std::vector<TetFace> behind;
     if (!sets.modulus_mpa.empty() || !sets.quality.empty()) behind = face_owners(mesh, false);
     const auto add = [&](const std::string& name, std::vector<double> of_tets, int components = 1) {
@@ -173,7 +194,7 @@ struct CellFields {
     if (!sets.shells.empty()) list.push_back({"skin_mm", 1, std::vector<double>(cells, 0)});
     for (const ShellSet& s : sets.shells) {
       std::map<std::array<std::int32_t, 3>, std::size_t> cell_of;
-      for (std::size_t i = 0; i < mesh.triangles.size(); ++i) cell_of[sorted(mesh.triangles[i].v)] = mesh.tets.size() + i;
+      for (std::size_t i = 0; i < mesh.triangles.size(); ++i) cell_of[sorted(mesh.triangles[i].v)] = mesh.elements() + i;
       for (const TetFace f : s.faces) {
         const std::array<std::int32_t, 6> nodes = mesh.outward_face(f);
         const auto found = cell_of.find(sorted({nodes[0], nodes[1], nodes[2]}));
@@ -221,8 +242,8 @@ void write_vtu(std::FILE* file, const PreparedMesh& mesh) {
   const CellLabels cells(mesh);
   const Connectivity connectivity(mesh);
   const CellFields fields(mesh);
-  std::vector<std::uint8_t> types(mesh.tets.size(), static_cast<std::uint8_t>(cell_type(mesh, true)));
-  types.resize(types.size() + mesh.triangles.size(), static_cast<std::uint8_t>(cell_type(mesh, false)));
+  std::vector<std::uint8_t> types(mesh.elements() + mesh.triangles.size());
+  for (std::size_t i = 0; i < types.size(); ++i) types[i] = static_cast<std::uint8_t>(cell_type(mesh, i));
   XmlFile xml("UnstructuredGrid");
   xml.field_data(mesh, false);  // meshio refuses a file that holds a string
   xml << "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
@@ -255,7 +276,7 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
     out.big_endian(p.y);
     out.big_endian(p.z);
   }
-  const std::size_t count = mesh.tets.size() + mesh.triangles.size();
+  const std::size_t count = mesh.elements() + mesh.triangles.size();
   const Connectivity connectivity(mesh);
   out << "\nCELLS " << count << ' ' << count + connectivity.corners.size() << '\n';
   std::int64_t begin = 0;
@@ -264,7 +285,7 @@ void write_vtk(std::FILE* file, const PreparedMesh& mesh) {
     for (; begin < end; ++begin) out.big_endian(connectivity.corners[begin]);
   }
   out << "\nCELL_TYPES " << count << '\n';
-  for (std::size_t i = 0; i < count; ++i) out.big_endian(cell_type(mesh, i < mesh.tets.size()));
+  for (std::size_t i = 0; i < count; ++i) out.big_endian(cell_type(mesh, i));
   const CellFields fields(mesh);
   out << "\nCELL_DATA " << count << "\nFIELD FieldData " << 3 + fields.list.size() << '\n';
   const auto field = [&](const char* name, const std::vector<std::int32_t>& values) {

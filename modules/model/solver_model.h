@@ -17,10 +17,35 @@ constexpr int kTetFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
 /// Mid-side nodes of those faces (kTetEdges), each behind the corner that its edge begins at.
 constexpr int kTetFaceMids[4][3] = {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}};
 
-/// A face of a tet.
+/// Corners of the two triangles at the ends of a wedge, in the order of Abaqus's S1 and S2, seen from inside anticlockwise; and their
+/// mid-side nodes (kWedgeEdges). Its other sides lie between elements of its label.
+constexpr int kWedgeFaces[2][3] = {{0, 1, 2}, {3, 5, 4}};
+constexpr int kWedgeFaceMids[2][3] = {{0, 1, 2}, {5, 4, 3}};
+
+/// A face of an element: of a tet by kTetFaces; of a wedge (TetMesh counts them behind the tets) by kWedgeFaces.
 struct TetFace {
   std::int32_t tet = 0, face = 0;
 };
+
+/// Corners and (of second order) mid-side nodes of a face, seen from outside anticlockwise; -1 for those that are not there.
+template <class Tets, class Mids, class Wedges, class WedgeMids>
+std::array<std::int32_t, 6> outward_face_of(TetFace f, const Tets& tets, const Mids& mids, const Wedges& wedges, const WedgeMids& wedge_mids) {
+  std::array<std::int32_t, 6> nodes = {-1, -1, -1, -1, -1, -1};
+  auto element = static_cast<std::size_t>(f.tet);
+  const auto fill = [&](const auto& corners, const auto& middles, const int (&corner)[3], const int (&mid)[3]) {
+    nodes = {corners[element][corner[0]], corners[element][corner[2]], corners[element][corner[1]], -1, -1, -1};
+    if (!middles.empty())
+      for (int k = 0; k < 3; ++k) nodes[3 + k] = middles[element][mid[2 - k]];
+  };
+  if (element < tets.size()) {
+    fill(tets, mids, kTetFaces[f.face], kTetFaceMids[f.face]);
+  } else {
+    element -= tets.size();
+    fill(wedges, wedge_mids, kWedgeFaces[f.face], kWedgeFaceMids[f.face]);
+  }
+  return nodes;
+}
+inline std::array<std::int32_t, 6> outward_face_of(const TetMesh& mesh, TetFace f) { return outward_face_of(f, mesh.tets, mesh.mid, mesh.wedges, mesh.wedge_mid); }
 
 /// Nodes under a name. Mid-side nodes are among them when all of their faces are.
 struct NodeSet {
@@ -75,7 +100,7 @@ struct ElementMaterial {
   std::string name;
   Label label = 0;
   double young_mpa = 0, poisson = 0, density_t_mm3 = 0;  ///< of kinds that are not linear: those at small strain
-  std::vector<std::int32_t> tets;  ///< ascending
+  std::vector<std::int32_t> tets;  ///< elements (TetMesh counts wedges behind the tets), ascending
   MaterialKind kind = MaterialKind::linear;
   std::vector<double> constants;   ///< MPa where they have a unit; as the kind says
 };
@@ -156,13 +181,13 @@ struct SolverSets {
   std::vector<int> part_of_node;           ///< with parts: whose each node is
   std::vector<std::int32_t> original;      ///< with parts: the node that each was before the parts were given their own copies
   std::vector<Tie> ties;                   ///< no node is in two of them; a node that is followed follows none
-  std::vector<ElementMaterial> materials;  ///< every tet is in exactly one, or there are none
+  std::vector<ElementMaterial> materials;  ///< every element is in exactly one, or there are none
   bool placeholder_materials = false;      ///< nobody gave any: E = 1 MPa, Poisson's ratio 0.3
   std::vector<Label> mapped;               ///< labels whose modulus varies from tet to tet
-  std::vector<double> modulus_mpa;         ///< per tet, not binned; empty: none
-  std::vector<double> density_t_mm3;       ///< per tet
-  std::vector<double> quality;             ///< scaled Jacobian per tet (modules/validate); empty: not measured
-  std::vector<std::array<Vec3, 2>> axes;   ///< per tet: fibre and, across it, sheet (unit); both 0 where it has none; empty: no tet has
+  std::vector<double> modulus_mpa;         ///< per element, not binned; empty: none
+  std::vector<double> density_t_mm3;       ///< per element
+  std::vector<double> quality;             ///< scaled Jacobian per element (modules/validate); empty: not measured
+  std::vector<std::array<Vec3, 2>> axes;   ///< per element: fibre and, across it, sheet (unit); both 0 where it has none; empty: no tet has
   std::vector<ShellSet> shells;
   std::vector<RigidPoint> points;
   std::vector<SpringSet> springs;
@@ -175,7 +200,7 @@ struct SolverSets {
   }
 };
 
-/// A mesh with what a solver needs. Its tets are grouped by ascending label, no point is unused.
+/// A mesh with what a solver needs. Its tets, and its wedges, are grouped by ascending label, no point is unused.
 struct SolverModel {
   TetMesh mesh;
   std::vector<LabelInfo> labels;  ///< ascending; with a name each, distinct whatever the letter case

@@ -151,6 +151,7 @@ void fill_label_rows(RunReport& report, const std::vector<LabelFidelity>* fideli
       for (const LabelTets& t : report.volume->labels)
         if (t.label == row.label) {
           row.tets = t.tets;
+          row.wedges = t.wedges;
           row.tet_volume_mm3 = t.volume_mm3;
           row.dihedral_min_deg = t.dihedral_min_deg;
           row.dihedral_max_deg = t.dihedral_max_deg;

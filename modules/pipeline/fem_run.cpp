@@ -56,9 +56,12 @@ class FemRun {
       plan_->mapping.threads = o_.mesh.mesh.threads;
     }
     if (o_.accuracy_rel) check_accuracy();
+    if (o_.accuracy_rel && !o_.mesh.layers.empty())
+      fail_usage("--accuracy cuts tetrahedra, not wedges", "--layer", "leave one of them out; compare runs with more wedges and a smaller --edge-length instead");
     if (!o_.image.empty()) image_ = read_image(o_.image, {"", o_.mesh.input.allow_outside});
     const std::vector<std::string>& inputs = o_.mesh.input.paths;
     if (inputs.size() != 1 || !is_readable_mesh(inputs[0])) return from_labels();
+    if (!o_.mesh.layers.empty()) fail_usage("--layer needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
     if (!o_.mesh.input.voids.empty()) fail_usage("--void needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
     return from_mesh(inputs[0]);
   }
@@ -176,7 +179,11 @@ class FemRun {
     product.mesh.points = std::move(file.points);
     product.mesh.tets = std::move(file.tets);
     product.mesh.mid = std::move(file.midside);
+    product.mesh.wedges = std::move(file.wedges);
+    product.mesh.wedge_mid = std::move(file.wedge_midside);
     product.mesh.labels = std::move(file.tet_labels);
+    if (!product.mesh.wedges.empty() && (o_.mesh.mesh.refine > 0 || o_.accuracy_rel))
+      fail_usage("the mesh has wedges, and only tetrahedra are cut into eight", path, o_.mesh.mesh.refine > 0 ? "leave --refine out" : "leave --accuracy out");
     const std::set<Label> present(product.mesh.labels.begin(), product.mesh.labels.end());
     for (const Label l : present) {
       if (l <= 0) fail_input("a label of the mesh is not above 0", path + ", label " + std::to_string(l), "number labels from 1; 0 is the background");
@@ -218,17 +225,7 @@ class FemRun {
       keep.insert(product.labels[k].number);
       if (kept.empty() || !o_.mesh.input.merge) kept.push_back(product.labels[k]);
     }
-    TetMesh& m = product.mesh;
-    std::size_t to = 0;
-    for (std::size_t t = 0; t < m.tets.size(); ++t) {
-      if (keep.count(m.labels[t]) == 0) continue;
-      m.tets[to] = m.tets[t];
-      if (!m.mid.empty()) m.mid[to] = m.mid[t];
-      m.labels[to++] = o_.mesh.input.merge ? kept[0].number : m.labels[t];
-    }
-    m.tets.resize(to);
-    m.labels.resize(to);
-    if (!m.mid.empty()) m.mid.resize(to);
+    relabel(product.mesh, [&](Label l) { return keep.count(l) == 0 ? 0 : o_.mesh.input.merge ? kept[0].number : l; });
     product.labels = std::move(kept);
   }
 
@@ -240,12 +237,13 @@ class FemRun {
       for (std::size_t i = 0; i < std::min<std::size_t>(quality.non_positive.size(), 100); ++i)
         list += (i > 0 ? ", " : "") + std::to_string(quality.non_positive[i] + 1);
       if (quality.non_positive.size() > 100) list += ", ...";
-      fail_input(std::to_string(quality.non_positive.size()) + " of " + std::to_string(mesh.tets.size()) +
+      fail_input(std::to_string(quality.non_positive.size()) + " of " + std::to_string(mesh.elements()) +
                      " elements have a Jacobian that is not positive",
                  report.input.path + ", elements " + list, "mesh it again, or turn the elements round where their nodes are in the wrong order");
     }
     if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
       mesh.mid.clear();
+      mesh.wedge_mid.clear();
       report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
     }
     add_label_rows(report, product.labels);
@@ -415,7 +413,8 @@ class FemRun {
     FemReport f;
     f.order = model.mesh.mid.empty() ? 1 : 2;
     f.nodes = model.mesh.points.size();
-    f.elements = model.mesh.tets.size();
+    f.elements = model.mesh.elements();
+    f.wedges = model.mesh.wedges.size();
     f.image = o_.image;
     f.materials_path = o_.materials;
     f.placeholder_materials = model.sets.placeholder_materials;

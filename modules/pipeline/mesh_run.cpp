@@ -94,6 +94,7 @@ class MeshRun {
     m.stitch.label_caps = known.values(o_.label_caps_text, "--caps");
     m.enhancement.label_edge_mm = known.values(o_.label_edges_text, "--edge-length");
     m.fill.label_max_volume_mm3 = known.values(o_.label_volumes_text, "--max-volume");
+    m.layers = resolve_layers(o_.layers, input_.labels, input_.voids);
     return m;
   }
 
@@ -135,6 +136,7 @@ class MeshRun {
     report_.surface_level = to_text(mesh_.level);
     report_.surface = mesh_.surface_check;
     report_.volume = mesh_.tets_check;
+    report_.layers = mesh_.layers;
     report_.closure = mesh_.closure == Closure::verified ? "verified" : mesh_.closure == Closure::failed ? "failed" : "skipped";
     for (LabelReport& row : report_.labels) {
       if (const auto v = mesh_.input_volume_mm3.find(row.label); v != mesh_.input_volume_mm3.end()) row.input_volume_mm3 = v->second;

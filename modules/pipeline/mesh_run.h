@@ -10,6 +10,7 @@
 #include "mesh/mesh.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
+#include "pipeline/layers.h"
 #include "pipeline/mesh_product.h"
 #include "report/run_report.h"
 
@@ -21,6 +22,7 @@ struct MeshRunOptions {
   std::vector<std::pair<std::string, LabelEndCaps>> label_caps_text;   ///< by the label's number or name
   std::vector<std::pair<std::string, double>> label_edges_text;        ///< edge length, mm
   std::vector<std::pair<std::string, double>> label_volumes_text;      ///< largest tetrahedron, mm3
+  LayerTexts layers;                              ///< of wedges, under the outer faces of labels
   std::string space = "lps";                      ///< "lps" or "ras"
   std::vector<std::string> names_outputs;         ///< .json files for the labels' numbers, names and colours
   std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format

@@ -49,7 +49,7 @@ bool faces_inwards(const InterfaceComplex& surface) {
 
 std::vector<std::string> turn_as_a_whole(InterfaceComplex& surface, TetMesh& tets, bool has_faces) {
   std::vector<std::string> notes;
-  if (tets.tets.empty()) {
+  if (tets.elements() == 0) {
     if (!faces_inwards(surface)) return notes;
     swap_corners(surface.triangles);
     return {"the triangles face inwards, as in a mirrored frame: all were turned round"};

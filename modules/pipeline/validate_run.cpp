@@ -70,7 +70,7 @@ class ValidateRun {
   HtmlPictures draw(bool labels) const {
     HtmlScene scene;
     scene.surface = &surface_;
-    if (!tets_.tets.empty()) scene.mesh = &tets_;
+    if (!tets_.elements() == 0) scene.mesh = &tets_;
     if (against_ && against_->input.volume) scene.volume = selected_ ? &*selected_ : &*against_->input.volume;
     if (against_ && !against_->input.volume) scene.sections = &against_->sections;
     if (against_) scene.stack_axis = against_->axis;
@@ -85,7 +85,7 @@ class ValidateRun {
   /// The defects' triangles, where they were requested and there are any.
   void write_defects(AtomicFiles& files, RunReport& report) const {
     if (!o_.write_defects || report.defects.empty()) return;
-    const InterfaceComplex part = defect_triangles(surface_, tets_.tets.empty() ? nullptr : &tets_, report.defects);
+    const InterfaceComplex part = defect_triangles(surface_, tets_.elements() == 0 ? nullptr : &tets_, report.defects);
     if (part.triangles.empty()) return;
     std::string name = file_.path.substr(file_.path.rfind('/') + 1);
     for (char& c : name)
@@ -107,12 +107,12 @@ class ValidateRun {
     JudgedMesh m;
     m.path = path, m.format = file_.format;
     m.vertices = file_.points.size() + file_.merged_points;
-    m.triangles = file_.triangles.size() + file_.dropped_triangles, m.tets = file_.tets.size();
+    m.triangles = file_.triangles.size() + file_.dropped_triangles, m.tets = file_.tets.size(), m.wedges = file_.wedges.size();
     m.order = file_.midside.empty() ? 1 : 2;
     if (!o_.reports.empty()) m.sha256 = sha256_of_file(path);
     report_.mesh = std::move(m);
     for (const std::string& n : file_.notes) warn(n);
-    if (file_.tets.empty()) {
+    if (file_.tets.empty() && file_.wedges.empty()) {
       surface_.points = std::move(file_.points);
       surface_.triangles = std::move(file_.triangles);
       return;
@@ -120,6 +120,8 @@ class ValidateRun {
     tets_.points = std::move(file_.points);
     tets_.tets = std::move(file_.tets);
     tets_.labels = std::move(file_.tet_labels);
+    tets_.wedges = std::move(file_.wedges);
+    tets_.wedge_mid = std::move(file_.wedge_midside);
     tets_.mid = std::move(file_.midside);
     tets_.faces = std::move(file_.triangles);
     has_faces_ = !tets_.faces.empty();
@@ -413,24 +415,15 @@ class ValidateRun {
     const bool same = std::all_of(to.begin(), to.end(), [](const auto& p) { return p.first == p.second; });
     if (same) return;
     apply(surface_.triangles);
-    if (tets_.tets.empty()) return;
+    if (tets_.elements() == 0) return;
     apply(tets_.faces);
-    std::size_t kept = 0;
-    for (std::size_t t = 0; t < tets_.tets.size(); ++t) {
-      const Label l = of(tets_.labels[t]);
-      if (l == 0) continue;
-      tets_.tets[kept] = tets_.tets[t];
-      if (!tets_.mid.empty()) tets_.mid[kept] = tets_.mid[t];
-      tets_.labels[kept++] = l;
-    }
-    tets_.tets.resize(kept), tets_.labels.resize(kept);
-    if (!tets_.mid.empty()) tets_.mid.resize(kept);
+    relabel(tets_, of);
   }
 
   // ---- checks
 
   void check() {
-    check_mesh(report_, surface_, tets_.tets.empty() ? nullptr : &tets_, o_.threads);
+    check_mesh(report_, surface_, tets_.elements() == 0 ? nullptr : &tets_, o_.threads);
     if (against_ && against_->input.volume) check_against_labels();
   }
 
@@ -463,7 +456,7 @@ class ValidateRun {
   void verdicts() {
     Judged j;
     j.surface = &surface_;
-    if (!tets_.tets.empty()) j.mesh = &tets_;
+    if (!tets_.elements() == 0) j.mesh = &tets_;
     if (against_) {
       if (against_->input.volume) j.volume = &*against_->input.volume;
       if (!against_->input.volume) j.sections = &against_->sections;

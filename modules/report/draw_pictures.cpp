@@ -254,9 +254,12 @@ class Pictures {
     json_["surface"]["cell_mm"] = packed.cell_mm;
     json_["surface"]["distance_unit_mm"] = packed.distance_unit_mm;
     if (scene_.mesh == nullptr || scene_.mesh->tets.empty()) return;
-    const DisplayGrid tet_grid = grid_over(scene_.mesh->points);
-    json_["tets"] = fitted("tets", tet_grid, scene_.mesh->tets.size(), kTetShare, std::min(1e6, kTetShare * bytes_ / kTetBytes), packed,
-                           [&](std::size_t most) { return pack_tets(*scene_.mesh, tet_grid, index_, most, options_.threads); });
+    TetMesh divided;  // wedges are drawn as tetrahedra
+    if (!scene_.mesh->wedges.empty()) divided = with_tets_only(*scene_.mesh);
+    const TetMesh& drawn = scene_.mesh->wedges.empty() ? *scene_.mesh : divided;
+    const DisplayGrid tet_grid = grid_over(drawn.points);
+    json_["tets"] = fitted("tets", tet_grid, drawn.tets.size(), kTetShare, std::min(1e6, kTetShare * bytes_ / kTetBytes), packed,
+                           [&](std::size_t most) { return pack_tets(drawn, tet_grid, index_, most, options_.threads); });
     json_["tets"]["one_of"] = packed.one_of;
   }
 

@@ -98,6 +98,8 @@ std::string to_html(const std::vector<HtmlSubject>& subjects) {
   if (first.input.sections > 0) subtitle += ", " + counted(first.input.sections, "section", "sections");
   if (subjects.size() == 1 && first.surface) subtitle += "; " + counted(first.surface->triangles, "triangle", "triangles");
   if (subjects.size() == 1 && first.volume && first.volume->tets > 0) subtitle += ", " + counted(first.volume->tets, "tetrahedron", "tetrahedra");
+  if (subjects.size() == 1 && first.volume && first.volume->wedges + first.volume->pyramids > 0)
+    subtitle += ", " + counted(first.volume->wedges, "wedge", "wedges") + ", " + counted(first.volume->pyramids, "pyramid", "pyramids");
   return filled(as_utf8(page::html),
                 {{"title", escaped(as_utf8("stackmesh report: " + title))},
                  {"heading", escaped(as_utf8(title))},

@@ -145,10 +145,31 @@ std::string table_head(const std::string& caption, const std::vector<std::string
   return out + "</tr></thead><tbody>\n";
 }
 
+/// Layers of wedges, and the places where they are thin.
+std::string layer_tables(const RunReport& r) {
+  if (r.layers.empty()) return "";
+  const char* const end = "</tbody></table></div>\n";
+  const auto head = [](Label label) { return "<tr><th scope=\"row\" class=\"text\">" + std::to_string(label) + "</th>"; };
+  std::string out = table_head("Layers of wedges under outer faces", {"*Label", "thickness, mm", "levels", "wedges", "pyramids", "tetrahedra", "outer faces, mm\xc2\xb2", "whole, %", "thinner, %", "missing, %", "thinnest, mm"});
+  for (const LayerFigures& f : r.layers)
+    out += head(f.label) + cell(f.asked.thickness_mm) + cell(f.asked.count) + cell(static_cast<double>(f.wedges), 8) + cell(static_cast<double>(f.pyramids), 8) + cell(static_cast<double>(f.tets), 8) +
+           cell(f.area_mm2, 5) + cell(100 * f.full_rel, 4) + cell(100 * f.thinned_rel, 3) + cell(100 * f.missing_rel, 3) + cell(f.thickness_min_mm) + "</tr>\n";
+  out += end;
+  if (std::all_of(r.layers.begin(), r.layers.end(), [](const LayerFigures& f) { return f.places.empty(); })) return out;
+  out += table_head("Where a layer is thin (the largest twenty places of each label)", {"*Label", "*at, mm", "area, mm\xc2\xb2", "thinnest, mm", "*why"});
+  for (const LayerFigures& f : r.layers)
+    for (std::size_t i = 0; i < std::min<std::size_t>(20, f.places.size()); ++i) {
+      const LayerPlace& p = f.places[i];
+      out += head(f.label) + text_cell(number(p.at_mm.x) + ", " + number(p.at_mm.y) + ", " + number(p.at_mm.z)) + cell(p.area_mm2, 4) + cell(p.thickness_mm) + text_cell(layer_limit_name(p.why)) + "</tr>\n";
+    }
+  return out + end;
+}
+
 std::string model_tables(const FemReport& f) {
   const char* const end = "</tbody></table></div>\n";
   const auto head = [](const std::string& name) { return "<tr><th scope=\"row\" class=\"text\">" + escaped(name) + "</th>"; };
-  std::string out = "<p>" + grouped(f.elements) + " tetrahedra of " + (f.order == 2 ? "10" : "4") + " nodes, " + grouped(f.nodes) + " nodes" +
+  const std::string of_wedges = f.wedges > 0 ? " and " + grouped(f.wedges) + " wedges of " + (f.order == 2 ? "15" : "6") : "";
+  std::string out = "<p>" + grouped(f.elements - f.wedges) + " tetrahedra of " + (f.order == 2 ? "10" : "4") + of_wedges + " nodes, " + grouped(f.nodes) + " nodes" +
                     (f.shells > 0 ? ", " + grouped(f.shells) + " faces with a skin" : "") + "; units mm, N, MPa, t/mm\xc2\xb3. " +
                     escaped(f.image.empty() ? "No intensities were mapped." : "Intensities: " + f.image + ".") + " " +
                     escaped(f.materials_path.empty() ? "No law was given: materials hold the place (E = 1 MPa)." : "Law: " + f.materials_path + ".") + "</p>\n";
@@ -275,7 +296,7 @@ std::string comparison_html(const std::vector<HtmlSubject>& subjects) {
 std::string labels_html(const std::vector<HtmlSubject>& subjects, const std::vector<std::string>& colours) {
   std::string out;
   for (std::size_t s = 0; s < subjects.size(); ++s) {
-    const std::string table = label_table(*subjects[s].report, colours);
+    const std::string table = label_table(*subjects[s].report, colours) + layer_tables(*subjects[s].report);
     if (subjects.size() == 1) return table;
     out += std::string("<details") + (s == 0 ? " open" : "") + "><summary>" + escaped(subjects[s].name) + "</summary>\n" + table + "</details>\n";
   }
@@ -356,7 +377,7 @@ std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
     if (s.report->mesh) {
       const JudgedMesh& m = *s.report->mesh;
       out += "<div class=\"table\"><table><caption>Mesh " + escaped(s.name) + "</caption><tbody>\n" + row("file", m.path) + row("format", m.format) + row("SHA-256", m.sha256) +
-             row("in the file", grouped(m.vertices) + " vertices, " + grouped(m.triangles) + " triangles, " + grouped(m.tets) + " tetrahedra" + (m.order == 2 ? " of 10 nodes" : "")) +
+             row("in the file", grouped(m.vertices) + " vertices, " + grouped(m.triangles) + " triangles, " + grouped(m.tets) + " tetrahedra" + (m.order == 2 ? " of 10 nodes" : "") + (m.wedges > 0 ? ", " + grouped(m.wedges) + " wedges and pyramids" : "")) +
              row("labels", m.labels) + row("frame", m.space + ": " + m.space_reason) + "</tbody></table></div>\n";
     }
   out += "</div>\n<div>\n";

@@ -63,7 +63,22 @@ Json volume(const RunReport& r) {
           {"dihedral_histogram", of(&VolumeCheck::dihedral_histogram)},
           {"radius_edge_max", of(&VolumeCheck::radius_edge_max)},
           {"scaled_jacobian_min", of(&VolumeCheck::scaled_jacobian_min)},
+          {"wedges", of(&VolumeCheck::wedges)},
+          {"pyramids", of(&VolumeCheck::pyramids)},
+          {"wedge_scaled_jacobian_min", of(&VolumeCheck::wedge_scaled_jacobian_min)},
           {"closure", r.closure}};
+}
+
+/// The largest fifty places.
+Json layer(const LayerFigures& f) {
+  Json places = Json::array();
+  for (std::size_t i = 0; i < std::min<std::size_t>(50, f.places.size()); ++i) {
+    const LayerPlace& p = f.places[i];
+    places.push_back({{"at_mm", {p.at_mm.x, p.at_mm.y, p.at_mm.z}}, {"area_mm2", p.area_mm2}, {"thickness_mm", p.thickness_mm}, {"why", layer_limit_name(p.why)}});
+  }
+  return {{"label", f.label}, {"thickness_mm", f.asked.thickness_mm}, {"count", f.asked.count}, {"wedges", f.wedges}, {"pyramids", f.pyramids}, {"tets", f.tets},
+          {"area_mm2", f.area_mm2}, {"full_share", f.full_rel}, {"thinned_share", f.thinned_rel}, {"missing_share", f.missing_rel},
+          {"thickness_min_mm", f.thickness_min_mm}, {"place_count", f.places.size()}, {"places", places}};
 }
 
 Json label(const LabelReport& l) {
@@ -79,6 +94,7 @@ Json label(const LabelReport& l) {
           {"surface_volume_mm3", l.surface_volume_mm3},
           {"tet_volume_mm3", optional(l.tet_volume_mm3)},
           {"tets", optional(l.tets)},
+          {"wedges", optional(l.wedges)},
           {"dice", optional(l.dice)},
           {"wrong_centres", optional(l.wrong_centres)},
           {"wrong_centres_share", optional(l.wrong_centres_share)},
@@ -142,7 +158,7 @@ Json limits(const Limits& l) {
 
 Json mesh(const std::optional<JudgedMesh>& m) {
   if (!m) return nullptr;
-  return {{"path", m->path}, {"format", m->format}, {"vertices", m->vertices}, {"triangles", m->triangles}, {"tets", m->tets}, {"order", m->order},
+  return {{"path", m->path}, {"format", m->format}, {"vertices", m->vertices}, {"triangles", m->triangles}, {"tets", m->tets}, {"wedges", m->wedges}, {"order", m->order},
           {"labels", m->labels}, {"space", m->space}, {"space_reason", m->space_reason}, {"sha256", m->sha256}};
 }
 
@@ -229,6 +245,7 @@ Json fem(const FemReport& f) {
           {"accuracy", accuracy},
           {"nodes", f.nodes},
           {"elements", f.elements},
+          {"wedges", f.wedges},
           {"shells", f.shells},
           {"units", "mm, N, MPa, t/mm3"},
           {"image", f.image.empty() ? Json(nullptr) : Json(f.image)},
@@ -253,6 +270,8 @@ Json describe(const RunReport& r) {
   for (const StageTime& s : r.stages) stages.push_back({{"name", s.name}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}});
   Json labels = Json::array();
   for (const LabelReport& l : r.labels) labels.push_back(label(l));
+  Json layers = Json::array();
+  for (const LayerFigures& f : r.layers) layers.push_back(layer(f));
   Json verdicts = Json::array(), defects = Json::array();
   for (const Verdict& v : r.verdicts) verdicts.push_back(verdict(v));
   for (const Defect& d : r.defects) defects.push_back(defect(d));
@@ -284,6 +303,7 @@ Json describe(const RunReport& r) {
       {"surface", surface(r)},
       {"volume", volume(r)},
       {"labels", labels},
+      {"layers", layers},
       {"mesh", mesh(r.mesh)},
       {"verdict", r.verdicts.empty() ? Json(nullptr) : Json(to_text(overall(r.verdicts)))},
       {"verdicts", verdicts},

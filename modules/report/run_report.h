@@ -10,6 +10,7 @@
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/estimate_error.h"
+#include "model/layers.h"
 #include "model/geometry.h"
 #include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
@@ -44,6 +45,7 @@ struct LabelReport {
   double surface_area_mm2 = 0, angle_min_deg = 0;
   std::optional<double> dihedral_min_deg, dihedral_max_deg;
   std::optional<double> thin_share, thickness_p5_mm;  ///< see check_thickness
+  std::optional<std::size_t> wedges;  ///< of layers, with pyramids
   std::size_t nonmanifold_edges = 0;
   std::optional<double> mean_bend_deg, bends_above_40_share;  ///< see Bends
 };
@@ -51,7 +53,7 @@ struct LabelReport {
 /// The mesh that `validate` judged, as its file told it.
 struct JudgedMesh {
   std::string path, format;
-  std::size_t vertices = 0, triangles = 0, tets = 0;  ///< in the file, before anything was joined or left out
+  std::size_t vertices = 0, triangles = 0, tets = 0, wedges = 0;  ///< in the file, before anything was joined or left out
   int order = 1;                                      ///< 2: tets of 10 nodes
   std::string labels;       ///< where its labels came from, and which label of the input each stands for
   std::string space;        ///< "lps", "ras" or "none"
@@ -98,6 +100,7 @@ struct FemAccuracy {
 struct FemReport {
   int order = 2;
   std::size_t nodes = 0, elements = 0, shells = 0;
+  std::size_t wedges = 0;  ///< of the elements, with pyramids
   std::string image, materials_path;  ///< "": none
   bool placeholder_materials = false;
   std::vector<FemSet> sets;
@@ -137,6 +140,7 @@ struct RunReport {
   std::optional<SurfaceCheck> surface;
   std::optional<Bends> bends;  ///< of the whole surface
   std::optional<VolumeCheck> volume;
+  std::vector<LayerFigures> layers;  ///< of wedges, by label; places in the world
   std::string closure = "skipped";  ///< verified, failed or skipped
   std::optional<FemReport> fem;     ///< of `fem` only
   std::vector<LabelReport> labels;

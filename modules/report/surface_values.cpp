@@ -40,7 +40,7 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
 
   std::vector<double> modulus = sets.modulus_mpa;
   if (modulus.empty() && !sets.placeholder_materials) {
-    modulus.assign(model.mesh.tets.size(), 0);
+    modulus.assign(model.mesh.elements(), 0);
     for (const ElementMaterial& m : sets.materials)
       for (const std::int32_t t : m.tets) modulus[t] = m.young_mpa;
   }
@@ -68,7 +68,8 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
       std::array<Vec3, 3> corners;
       std::array<std::int32_t, 3> nodes;
       for (int k = 0; k < 3; ++k) {
-        nodes[k] = model.mesh.tets[f.tet][kTetFaces[f.face][k]];
+        const auto element = static_cast<std::size_t>(f.tet);
+        nodes[k] = model.mesh.is_wedge(element) ? model.mesh.wedges[element - model.mesh.tets.size()][kWedgeFaces[f.face][k]] : model.mesh.tets[element][kTetFaces[f.face][k]];
         corners[k] = model.mesh.points[nodes[k]];
       }
       corners = sorted(corners);
@@ -87,8 +88,9 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
       v.set = static_cast<std::uint8_t>(out.sets.size());
       const auto mids_pushed = [&] {  // of second order, corners of a plane face bear nothing
         if (model.mesh.mid.empty()) return pushed[nodes[0]] && pushed[nodes[1]] && pushed[nodes[2]];
-        for (const int e : kTetFaceMids[f.face])
-          if (!pushed[model.mesh.mid[f.tet][e]]) return false;
+        const auto face = outward_face_of(model.mesh, f);
+        for (int k = 3; k < 6; ++k)
+          if (!pushed[face[k]]) return false;
         return true;
       };
       if (loaded.count(s->name) > 0 || mids_pushed()) v.acts |= 2;

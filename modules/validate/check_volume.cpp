@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "validate/check_wedges.h"
 #include "validate/exact.h"
 #include "validate/statistics.h"
 
@@ -20,10 +21,17 @@ void check_input(const TetMesh& mesh) {
   const auto fine = [n = static_cast<std::int64_t>(mesh.points.size())](std::int32_t v) {
     return v >= 0 && v < n;
   };
-  if (mesh.labels.size() != mesh.tets.size())
+  if (mesh.labels.size() != mesh.elements())
     fail_input(
-        std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.tets.size()) + " tets",
+        std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.elements()) + (mesh.wedges.empty() ? " tets" : " elements"),
         "tetrahedral mesh", "write the mesh again");
+  for (std::size_t t = mesh.tets.size(); t < mesh.elements(); ++t)
+    each_node(mesh, t, [&](std::int32_t v) {
+      if (!fine(v)) fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
+    });
+  const bool all = mesh.wedge_mid.size() == mesh.wedges.size(), none = mesh.wedge_mid.empty();
+  if (!(all || none) || (!mesh.tets.empty() && !mesh.wedges.empty() && mesh.mid.empty() != none))
+    fail_input("mid-side nodes for " + std::to_string(mesh.wedge_mid.size()) + " of " + std::to_string(mesh.wedges.size()) + " wedges", "tetrahedral mesh", "write the mesh again");
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
       fail_input("a tet names a point that does not exist", "tet " + std::to_string(t),
@@ -290,6 +298,17 @@ void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& c
     check.scaled_jacobian_min =
         t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
   }
+  for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
+    const WedgeShape shape = wedge_shape(mesh, w);
+    const std::size_t element = mesh.tets.size() + w;
+    Sum& label = labels[mesh.labels[element]];
+    ++label.row.wedges;
+    label.volume_mm3 += shape.volume_mm3;
+    ++(is_pyramid(mesh.wedges[w]) ? check.pyramids : check.wedges);
+    check.inverted += shape.inverted;
+    if (shape.inverted && check.inverted_list.size() < limit) check.inverted_list.push_back(static_cast<std::int32_t>(element));
+    check.wedge_scaled_jacobian_min = w == 0 ? shape.scaled_jacobian : std::min(check.wedge_scaled_jacobian_min, shape.scaled_jacobian);
+  }
   check.pinched = count_pinched(mesh, shapes);
   check.in_narrow_wedges = count_in_narrow_wedges(mesh, shapes);
   check.dihedral_p1_deg = percentile(dihedrals, 0.01);
@@ -346,6 +365,10 @@ class ConformityCheck {
       for (const auto& face : f.list)
         if (check_.nonconforming_list.size() < limit_) check_.nonconforming_list.push_back(face);
     }
+    for (const auto& side : unshared_sides(mesh_)) {
+      ++check_.nonconforming_faces;
+      if (check_.nonconforming_list.size() < limit_) check_.nonconforming_list.push_back({side[0], side[1], side[2]});
+    }
     check_.conforms = check_.nonconforming_faces == 0;
   }
 
@@ -369,6 +392,10 @@ class ConformityCheck {
       add({a, d, c}, true, l, l, visit);
       add({a, b, d}, true, l, l, visit);
       add({a, c, b}, true, l, l, visit);
+    }
+    for (std::size_t w = 0; w < mesh_.wedges.size(); ++w) {
+      const Label l = mesh_.labels[mesh_.tets.size() + w];
+      each_wedge_triangle(mesh_.wedges[w], [&](const std::array<std::int32_t, 3>& v) { add(v, true, l, l, visit); });
     }
     for (const auto& f : mesh_.faces) add(f.v, false, f.below, f.above, visit);
   }
@@ -394,7 +421,7 @@ class ConformityCheck {
   VolumeCheck& check_;
 };
 
-/// Tets that share an edge share its node, and no node is on two edges, or a corner.
+/// Elements that share an edge share its node, and no node is on two edges, or a corner.
 std::size_t count_unshared_edges(const TetMesh& mesh) {
   struct Edge {
     std::int32_t low, high, mid;
@@ -411,6 +438,14 @@ std::size_t count_unshared_edges(const TetMesh& mesh) {
       edges.push_back({std::min(a, b), std::max(a, b), mesh.mid[t][e]});
     }
     for (const std::int32_t v : mesh.tets[t]) taken[v] = 1;
+  }
+  for (std::size_t w = 0; w < mesh.wedge_mid.size(); ++w) {
+    static constexpr int kSides[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+    for (int e = 0; e < (is_pyramid(mesh.wedges[w]) ? 8 : 9); ++e) {
+      const std::int32_t a = mesh.wedges[w][kSides[e][0]], b = mesh.wedges[w][kSides[e][1]];
+      edges.push_back({std::min(a, b), std::max(a, b), mesh.wedge_mid[w][e]});
+    }
+    for (const std::int32_t v : mesh.wedges[w]) taken[v] = 1;
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -430,7 +465,7 @@ VolumeCheck check_volume(const TetMesh& mesh, const VolumeCheckOptions& options)
   VolumeCheck check;
   check.nodes = mesh.points.size();
   check.tets = mesh.tets.size();
-  check.order = mesh.mid.empty() ? 1 : 2;
+  check.order = mesh.mid.empty() && mesh.wedge_mid.empty() ? 1 : 2;
   measure(mesh, options.threads, options.list_limit, check);
   ConformityCheck(mesh, options.threads, options.list_limit, check).run();
   check.nonconforming_edges = count_unshared_edges(mesh);

@@ -217,8 +217,8 @@ class DefectFinder {
     d.label = mesh_->labels[t];
     Extent e;
     Vec3 sum;
-    for (const std::int32_t v : mesh_->tets[t]) e.add(mesh_->points[v]), sum = sum + mesh_->points[v];
-    d.where = 0.25 * sum;
+    each_corner(*mesh_, t, [&](std::int32_t v) { e.add(mesh_->points[v]), sum = sum + mesh_->points[v]; });
+    d.where = (mesh_->is_wedge(t) ? 1.0 / 6 : 0.25) * sum;
     d.size_mm = e.size();
     return d;
   }
@@ -227,6 +227,12 @@ class DefectFinder {
     if (volume_->inverted == 0) return;
     std::vector<Defect> found;
     for (const std::int32_t t : volume_->inverted_list) {
+      if (mesh_->is_wedge(static_cast<std::size_t>(t))) {
+        Defect d = of_tet("inverted_tet", static_cast<std::size_t>(t));
+        d.text = "wedge " + std::to_string(t - static_cast<std::int64_t>(mesh_->tets.size())) + " is inverted " + place_of(d.where);
+        found.push_back(std::move(d));
+        continue;
+      }
       const auto& v = mesh_->tets[t];
       const auto& p = mesh_->points;
       const int sign = exact_orientation(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
@@ -399,7 +405,12 @@ InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh
     for (const std::int64_t e : d.entities) {
       if (d.entity_kind == "triangles") add(complex.points, complex.triangles[e].v, 0, label);
       if (d.entity_kind == "points" && d.kind != "nonconforming_face") at_point.emplace(static_cast<std::int32_t>(e), label);
-      if (d.entity_kind == "tets" && mesh) {
+      if (d.entity_kind == "tets" && mesh && mesh->is_wedge(static_cast<std::size_t>(e))) {
+        const std::int64_t offset = mesh->points.data() == complex.points.data() ? 0 : static_cast<std::int64_t>(complex.points.size());
+        const auto& w = mesh->wedges[static_cast<std::size_t>(e) - mesh->tets.size()];
+        add(mesh->points, {w[0], w[2], w[1]}, offset, label);
+        add(mesh->points, {w[3], w[4], w[5]}, offset, label);
+      } else if (d.entity_kind == "tets" && mesh) {
         const auto& v = mesh->tets[e];
         const std::int64_t offset = mesh->points.data() == complex.points.data() ? 0 : static_cast<std::int64_t>(complex.points.size());
         for (const auto& f : {std::array<int, 3>{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}) add(mesh->points, {v[f[0]], v[f[1]], v[f[2]]}, offset, label);

@@ -28,7 +28,7 @@ class Judge {
 
   std::vector<Verdict> run() {
     if (in_.surface) closed(), intersections();
-    if (in_.volume && in_.volume->tets > 0) orientation(), conforming();
+    if (in_.volume && in_.volume->tets + in_.volume->wedges > 0) orientation(), conforming();
     if (in_.topology) topology();
     if (in_.fidelity && !in_.fidelity->empty()) components(), volume(), position(), fidelity();
     if (in_.bends && in_.bends->surface.edges > 0) roughness();
@@ -87,6 +87,7 @@ class Judge {
   void orientation() {
     Verdict& v = add("orientation", "No inverted tetrahedra", true);
     v.figure = std::to_string(in_.volume->inverted) + " of " + counted(in_.volume->tets, "tetrahedron", "tetrahedra");
+    if (const std::size_t wedges = in_.volume->wedges + in_.volume->pyramids; wedges > 0) v.figure += " and " + counted(wedges, "wedge", "wedges");
     v.limit = "none allowed";
     v.status = in_.volume->inverted > 0 ? Status::fail : Status::pass;
     v.explanation = v.status == Status::pass ? "Every tetrahedron has a positive volume (exact arithmetic)."

@@ -12,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "model/wedge_shape.h"
+#include "volume/layer_levels.h"
 
 namespace stackmesh {
 namespace {
@@ -21,7 +23,7 @@ Vec3 unit(Vec3 v) {
   return length > 0 ? (1 / length) * v : Vec3{};
 }
 
-/// All edges of the tets, each once; numbered by (smaller end, larger end).
+/// All edges of the elements, each once; numbered by (smaller end, larger end).
 struct Edges {
   std::vector<std::int64_t> begin;  // of each point as smaller end
   std::vector<std::int32_t> larger;
@@ -30,10 +32,13 @@ struct Edges {
     const auto each = [&](auto visit) {
       for (const auto& t : mesh.tets)
         for (const auto& e : kTetEdges) visit(std::min(t[e[0]], t[e[1]]), std::max(t[e[0]], t[e[1]]));
+      for (const auto& w : mesh.wedges)
+        for (const auto& e : kWedgeEdges)
+          if (w[e[0]] != w[e[1]]) visit(std::min(w[e[0]], w[e[1]]), std::max(w[e[0]], w[e[1]]));
     };
     each([&](std::int32_t low, std::int32_t) { ++begin[low + 1]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<std::int32_t> all(6 * mesh.tets.size());
+    std::vector<std::int32_t> all(static_cast<std::size_t>(begin.back()));
     std::vector<std::int64_t> next(begin.begin(), begin.end() - 1);
     each([&](std::int32_t low, std::int32_t high) { all[next[low]++] = high; });
     larger.reserve(2 * mesh.tets.size());
@@ -46,7 +51,7 @@ struct Edges {
     begin.back() = static_cast<std::int64_t>(larger.size());
   }
 
-  /// -1 when no tet has it.
+  /// -1 when no element has it.
   std::int64_t find(std::int32_t a, std::int32_t b) const {
     if (a > b) std::swap(a, b);
     const auto from = larger.begin() + begin[a], to = larger.begin() + begin[a + 1];
@@ -285,9 +290,22 @@ Determinant determinant_of(const std::array<Vec3, 4>& corner, const std::array<V
   return {smallest / straight, sum / 20 / 6};
 }
 
+/// Of a wedge: the smallest determinant at its nodes and integration points over the straight one's there, and its volume.
+Determinant determinant_of_wedge(const WedgeNodes& nodes, bool pyramid) {
+  static const std::vector<WedgePlace> places[2] = {wedge_check_places(false), wedge_check_places(true)};
+  WedgeNodes straight = nodes;
+  straight.quadratic = false;
+  double least = std::numeric_limits<double>::infinity();
+  for (const WedgePlace& p : places[pyramid]) {
+    const double before = wedge_point(straight, p).determinant, now = wedge_point(nodes, p).determinant;
+    least = std::min(least, before > 0 ? now / before : -1);
+  }
+  return {least, wedge_volume(nodes)};
+}
+
 class Raiser {
  public:
-  Raiser(TetMesh mesh, const OrderOptions& options) : o_(options), edges_(mesh), mesh_(std::move(mesh)) {}
+  Raiser(TetMesh mesh, const OrderOptions& options) : o_(options), edges_(mesh), levels_(mesh), mesh_(std::move(mesh)) {}
 
   OrderResult run() {
     OrderResult result;
@@ -299,9 +317,11 @@ class Raiser {
         const Vec3 a = mesh_.points[v[0]];
         volumes[mesh_.labels[t]] += dot(mesh_.points[v[1]] - a, cross(mesh_.points[v[2]] - a, mesh_.points[v[3]] - a)) / 6;
       }
+    for (std::size_t w = 0; w < mesh_.wedges.size() && o_.volumes_restored; ++w) volumes[mesh_.labels[mesh_.tets.size() + w]] += wedge_volume(wedge_nodes(mesh_, w));
     if (o_.follow_surface) {
       const SurfaceCurves curves(mesh_, edges_, o_.ridge_deg);
       curves.each_offset([&](std::int64_t edge, Vec3 offset) { ways.emplace_back(edge, offset); });
+      bend_layers(ways);
       if (o_.volumes_restored) result.moved_corners = draw_in(curves.stand_off());
     }
     place_straight();
@@ -328,6 +348,13 @@ class Raiser {
       for (std::int64_t e = edges_.begin[p]; e < edges_.begin[p + 1]; ++e)
         mesh_.points[first_ + e] = middle(p, edges_.larger[e]);
     mesh_.mid.resize(mesh_.tets.size());
+    for (const auto& w : mesh_.wedges) {
+      auto& mid = mesh_.wedge_mid.emplace_back();
+      for (int k = 0; k < 9; ++k) {
+        const std::int32_t a = w[kWedgeEdges[k][0]], b = w[kWedgeEdges[k][1]];
+        mid[k] = a == b ? a : first_ + static_cast<std::int32_t>(edges_.find(a, b));
+      }
+    }
     parallel_for((mesh_.tets.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(mesh_.tets.size(), (chunk + 1) * kChunk); ++t)
         for (int k = 0; k < 6; ++k)
@@ -336,45 +363,76 @@ class Raiser {
     });
   }
 
+  /// Edges of a layer bend with those of the surface over them, by their share.
+  void bend_layers(std::vector<std::pair<std::int64_t, Vec3>>& ways) const {
+    if (!levels_.any) return;
+    std::map<std::int64_t, Vec3> of_surface(ways.begin(), ways.end());
+    for (std::int32_t p = 0; p < static_cast<std::int32_t>(mesh_.points.size()); ++p)
+      for (std::int64_t e = edges_.begin[p]; e < edges_.begin[p + 1]; ++e) {
+        const std::int32_t q = edges_.larger[e], a = levels_.top[p], b = levels_.top[q];
+        const double share = std::min(levels_.share[p], levels_.share[q]);
+        if (a == b || (a == p && b == q) || share == 0) continue;
+        const auto over = of_surface.find(edges_.find(a, b));
+        if (over != of_surface.end()) ways.emplace_back(e, share * over->second);
+      }
+  }
+
   Vec3 middle(std::int32_t p, std::int32_t q) const { return 0.5 * (mesh_.points[p] + mesh_.points[q]); }
 
   /// Moves the corners by -off; where a tet would lose more than three tenths of its volume its corners move half as far, and so on.
-  std::size_t draw_in(const std::vector<Vec3>& off) {
-    constexpr double kKept = 0.7;
+  std::size_t draw_in(std::vector<Vec3> off) {
     const std::vector<Vec3> from = mesh_.points;
-    std::vector<double> share(from.size(), 1);
+    std::vector<double> share(from.size(), 1);  // of points of columns: that of their top counts
     std::vector<std::int32_t> suspects;
-    const auto moves = [&](std::int32_t v) { return share[v] > 0 && dot(off[v], off[v]) > 0; };
-    const auto any_moves = [&](std::int32_t t) { return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), moves); };
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
-      if (any_moves(static_cast<std::int32_t>(t))) suspects.push_back(static_cast<std::int32_t>(t));
-    const std::vector<std::int32_t> all = suspects;
-    const auto determinant = [&](const std::vector<Vec3>& p, std::int32_t t) {
-      const auto& v = mesh_.tets[t];
-      return dot(p[v[1]] - p[v[0]], cross(p[v[2]] - p[v[0]], p[v[3]] - p[v[0]]));
+    for (std::size_t v = 0; v < off.size(); ++v)
+      if (const std::int32_t top = levels_.top[v]; levels_.hangs(static_cast<std::int32_t>(v))) off[v] = levels_.share[v] * off[top];
+    const auto moves = [&](std::int32_t v) { return share[levels_.top[v]] > 0 && dot(off[v], off[v]) > 0; };
+    const auto any_of = [&](std::int32_t t, auto test) {
+      bool any = false;
+      each_corner(mesh_, static_cast<std::size_t>(t), [&](std::int32_t v) { any = any || test(v); });
+      return any;
     };
+    for (std::size_t t = 0; t < mesh_.elements(); ++t)
+      if (any_of(static_cast<std::int32_t>(t), moves)) suspects.push_back(static_cast<std::int32_t>(t));
+    const std::vector<std::int32_t> all = suspects;
     for (std::size_t v = 0; v < from.size(); ++v) mesh_.points[v] = from[v] - off[v];
     while (!suspects.empty()) {
       std::vector<char> less(from.size(), 0);
       bool any = false;
       for (const std::int32_t t : suspects)
-        if (any_moves(t) && !(determinant(mesh_.points, t) >= kKept * determinant(from, t))) {
+        if (any_of(t, moves) && !keeps_volume(from, t)) {
           any = true;
-          for (const std::int32_t v : mesh_.tets[t]) less[v] = moves(v);
+          each_corner(mesh_, static_cast<std::size_t>(t), [&](std::int32_t v) { less[levels_.top[v]] = less[levels_.top[v]] || moves(v); });
         }
       if (!any) break;
-      for (std::size_t v = 0; v < from.size(); ++v) {
-        if (!less[v]) continue;
-        share[v] = share[v] > 1.0 / 16 ? share[v] / 2 : 0;
-        mesh_.points[v] = from[v] - share[v] * off[v];
-      }
+      for (std::size_t v = 0; v < from.size(); ++v)
+        if (less[v]) share[v] = share[v] > 1.0 / 16 ? share[v] / 2 : 0;
+      for (std::size_t v = 0; v < from.size(); ++v)
+        if (less[levels_.top[v]]) mesh_.points[v] = from[v] - share[levels_.top[v]] * off[v];
       suspects.clear();
       for (const std::int32_t t : all)
-        if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), [&](std::int32_t v) { return less[v] != 0; })) suspects.push_back(t);
+        if (any_of(t, [&](std::int32_t v) { return less[levels_.top[v]] != 0; })) suspects.push_back(t);
     }
     std::size_t count = 0;
     for (std::size_t v = 0; v < from.size(); ++v) count += moves(static_cast<std::int32_t>(v));
     return count;
+  }
+
+  /// Has an element seven tenths of its volume yet (a wedge: at each of its corners)?
+  bool keeps_volume(const std::vector<Vec3>& from, std::int32_t element) const {
+    constexpr double kKept = 0.7;
+    const auto keeps = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+      const auto determinant = [&](const std::vector<Vec3>& p) { return dot(p[b] - p[a], cross(p[c] - p[a], p[d] - p[a])); };
+      return determinant(mesh_.points) >= kKept * determinant(from);
+    };
+    if (!mesh_.is_wedge(static_cast<std::size_t>(element))) {
+      const auto& v = mesh_.tets[element];
+      return keeps(v[0], v[1], v[2], v[3]);
+    }
+    const auto& w = mesh_.wedges[static_cast<std::size_t>(element) - mesh_.tets.size()];
+    for (int k = 0; k < (is_pyramid(w) ? 2 : 3); ++k)
+      if (!keeps(w[0], w[1], w[2], w[3 + k]) || !keeps(w[3], w[5], w[4], w[k])) return false;
+    return true;
   }
 
   void bend(const std::vector<std::pair<std::int64_t, Vec3>>& ways) {
@@ -387,12 +445,24 @@ class Raiser {
       mesh_.points[first_ + edge] = straight_.back() + offset;
     }
     share_.assign(bent_.size(), 1);
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
-      if (std::any_of(mesh_.mid[t].begin(), mesh_.mid[t].end(), [&](std::int32_t m) { return bent_of_[m - first_] >= 0; }))
-        curved_tets_.push_back(static_cast<std::int32_t>(t));
+    for (std::size_t t = 0; t < mesh_.elements(); ++t)
+      if (any_mid(static_cast<std::int32_t>(t), [&](std::int32_t b) { return b >= 0; })) curved_tets_.push_back(static_cast<std::int32_t>(t));
   }
 
-  Determinant determinant_of_tet(std::int32_t tet) const {
+  /// True when the test holds for a mid-side node of an element, given its place among the bent ones (-1: straight).
+  template <class Test>
+  bool any_mid(std::int32_t element, Test test) const {
+    const auto tet = static_cast<std::size_t>(element);
+    if (!mesh_.is_wedge(tet)) return std::any_of(mesh_.mid[tet].begin(), mesh_.mid[tet].end(), [&](std::int32_t m) { return test(bent_of_[m - first_]); });
+    const auto& mid = mesh_.wedge_mid[tet - mesh_.tets.size()];
+    return std::any_of(mid.begin(), mid.end(), [&](std::int32_t m) { return m >= first_ && test(bent_of_[m - first_]); });
+  }
+
+  Determinant determinant_of_element(std::int32_t tet) const {
+    if (mesh_.is_wedge(static_cast<std::size_t>(tet))) {
+      const std::size_t w = static_cast<std::size_t>(tet) - mesh_.tets.size();
+      return determinant_of_wedge(wedge_nodes(mesh_, w), is_pyramid(mesh_.wedges[w]));
+    }
     std::array<Vec3, 4> corner;
     std::array<Vec3, 6> mid;
     for (int i = 0; i < 4; ++i) corner[i] = mesh_.points[mesh_.tets[tet][i]];
@@ -404,19 +474,21 @@ class Raiser {
   /// back at their middles are left.
   void hold_back() {
     std::vector<std::int32_t> suspects = curved_tets_;
-    std::vector<double> bounds(mesh_.tets.size(), 1);
+    std::vector<double> bounds(mesh_.elements(), 1);
     std::vector<char> moved(bent_.size());
     while (!suspects.empty()) {
       parallel_for((suspects.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kChunk; i < std::min(suspects.size(), (chunk + 1) * kChunk); ++i)
-          bounds[suspects[i]] = determinant_of_tet(suspects[i]).least_rel;
+          bounds[suspects[i]] = determinant_of_element(suspects[i]).least_rel;
       });
       std::fill(moved.begin(), moved.end(), 0);
       bool any = false;
       for (const std::int32_t t : suspects)
         if (!(bounds[t] >= o_.jacobian_rel))
-          for (const std::int32_t m : mesh_.mid[t])
-            if (const std::int32_t b = bent_of_[m - first_]; b >= 0 && share_[b] > 0) moved[b] = 1, any = true;
+          any_mid(t, [&](std::int32_t b) {
+            if (b >= 0 && share_[b] > 0) moved[b] = 1, any = true;
+            return false;
+          });
       if (!any) break;
       for (std::size_t b = 0; b < bent_.size(); ++b) {
         if (!moved[b]) continue;
@@ -425,9 +497,7 @@ class Raiser {
       }
       suspects.clear();
       for (const std::int32_t t : curved_tets_)
-        if (std::any_of(mesh_.mid[t].begin(), mesh_.mid[t].end(),
-                        [&](std::int32_t m) { return bent_of_[m - first_] >= 0 && moved[bent_of_[m - first_]]; }))
-          suspects.push_back(t);
+        if (any_mid(t, [&](std::int32_t b) { return b >= 0 && moved[b]; })) suspects.push_back(t);
     }
     for (const std::int32_t t : curved_tets_) bound_ = std::min(bound_, bounds[t]);
   }
@@ -435,10 +505,10 @@ class Raiser {
   /// What each label still holds too much or too little is given to its curved sides, all nodes of a side between two labels
   /// moving by the same along their normals. Nodes stay in planes across an axis.
   void give_back_volumes(const std::map<Label, double>& wanted) {
-    std::vector<double> held(mesh_.tets.size());
+    std::vector<double> held(mesh_.elements());
     parallel_for((held.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(held.size(), (chunk + 1) * kChunk); ++t)
-        held[t] = determinant_of_tet(static_cast<std::int32_t>(t)).volume;
+        held[t] = determinant_of_element(static_cast<std::int32_t>(t)).volume;
     });
     std::map<Label, double> missing = wanted, push;
     for (std::size_t t = 0; t < held.size(); ++t) missing[mesh_.labels[t]] -= held[t];
@@ -477,6 +547,8 @@ class Raiser {
       if (planes[v] & 2) shift[v].y = 0;
       if (planes[v] & 4) shift[v].z = 0;
     }
+    for (std::size_t v = 0; v < shift.size(); ++v)
+      if (const std::int32_t top = levels_.top[v]; levels_.hangs(static_cast<std::int32_t>(v))) shift[v] = levels_.share[v] * shift[top];
     const std::vector<Vec3> before = mesh_.points;
     for (double share = 1; share > 0.1; share /= 2) {
       for (std::int32_t p = 0; p < first_; ++p) {
@@ -484,10 +556,10 @@ class Raiser {
         for (std::int64_t e = edges_.begin[p]; e < edges_.begin[p + 1]; ++e)
           mesh_.points[first_ + e] = before[first_ + e] + 0.5 * share * (shift[p] + shift[edges_.larger[e]]);
       }
-      std::vector<double> least((mesh_.tets.size() + kChunk - 1) / kChunk, 1);
+      std::vector<double> least((mesh_.elements() + kChunk - 1) / kChunk, 1);
       parallel_for(least.size(), o_.threads, [&](std::size_t chunk) {
         for (std::size_t t = chunk * kChunk; t < std::min(held.size(), (chunk + 1) * kChunk); ++t)
-          least[chunk] = std::min(least[chunk], determinant_of_tet(static_cast<std::int32_t>(t)).least_rel);
+          least[chunk] = std::min(least[chunk], determinant_of_element(static_cast<std::int32_t>(t)).least_rel);
       });
       const double now = *std::min_element(least.begin(), least.end());
       if (now < std::min(bound_, o_.jacobian_rel)) continue;
@@ -500,13 +572,14 @@ class Raiser {
   static constexpr std::size_t kChunk = 1 << 12;
   const OrderOptions& o_;
   const Edges edges_;
+  const volume::LayerLevels levels_;
   TetMesh mesh_;
   std::int32_t first_ = 0;              // mid-side node of edge 0
   std::vector<std::int32_t> bent_of_;   // of an edge, -1: straight
   std::vector<std::int32_t> bent_;      // edges
   std::vector<Vec3> straight_, offsets_;
   std::vector<double> share_;           // of the offset
-  std::vector<std::int32_t> curved_tets_;
+  std::vector<std::int32_t> curved_tets_;  // elements
   double bound_ = 1;
 };
 
@@ -517,6 +590,10 @@ void check_input(const TetMesh& mesh, const OrderOptions& options) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
       fail_input("a tet names a point that does not exist", "tet " + std::to_string(t), "write the mesh again");
+  for (std::size_t t = mesh.tets.size(); t < mesh.elements(); ++t)
+    each_corner(mesh, t, [&](std::int32_t v) {
+      if (!fine(v)) fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
+    });
   for (std::size_t t = 0; t < mesh.faces.size(); ++t)
     if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
       fail_input("a face names a point that does not exist", "face " + std::to_string(t), "write the mesh again");
