@@ -83,6 +83,7 @@ class Pool {
   Pool(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder, const RunCasesOptions& options,
        const std::function<void(const CaseEvent&)>& tell)
       : cases_(cases), command_(command), folder_(folder), o_(options), tell_(tell), jobs_(options.jobs > 0 ? options.jobs : usable_cores()),
+        look_timeout_s_(std::min(options.look_timeout_s, options.timeout_s.value_or(options.look_timeout_s))),
         budget_mb_(static_cast<double>(options.memory_bytes > 0 ? options.memory_bytes : free_memory()) / (1 << 20)) {}
 
   RunCasesResult run() {
@@ -116,7 +117,7 @@ class Pool {
       if (!job->is_looked && job->look_process.is_running()) {
         if (job->look_process.has_ended(end)) {
           take_look(*job, job->look_process.text());
-        } else if (job->look_process.age_s() > o_.look_timeout_s) {
+        } else if (job->look_process.age_s() > look_timeout_s_) {
           job->look_process = Child();
           take_look(*job, "");
         }
@@ -192,7 +193,7 @@ class Pool {
       else if (o_.timeout_s) seconds = std::min(seconds, *o_.timeout_s - job.process.age_s());
     }
     for (const Job& job : waiting_)
-      if (!job.is_looked) seconds = std::min(seconds, o_.look_timeout_s + 0.1 - job.look_process.age_s());
+      if (!job.is_looked) seconds = std::min(seconds, look_timeout_s_ + 0.1 - job.look_process.age_s());
     return seconds;
   }
 
@@ -301,7 +302,7 @@ class Pool {
   const RunCasesOptions& o_;
   const std::function<void(const CaseEvent&)>& tell_;
   const int jobs_;
-  const double budget_mb_;
+  const double look_timeout_s_, budget_mb_;
   ChildSignals signals_;
   std::size_t next_ = 0, ended_ = 0;
   std::deque<Job> waiting_;

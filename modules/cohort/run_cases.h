@@ -18,7 +18,7 @@ struct RunCasesOptions {
   std::optional<double> timeout_s;       ///< of each case, wall time; unset: none
   int retries = 0;                       ///< more tries of a case that fails other than by its call or input (exit 2 and 3)
   bool failed_again = false;             ///< cases that failed before with the same key run again
-  double look_timeout_s = 120;           ///< a look that takes longer is given up, and the case runs alone
+  double look_timeout_s = 120;           ///< a look that takes longer (or longer than timeout_s) is given up, and the case runs alone
 };
 
 /// What happened to a case.
