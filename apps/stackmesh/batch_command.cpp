@@ -32,7 +32,7 @@ struct BatchArguments {
   std::string manifest, inputs, folder, formats, only, memory, case_memory, slurm, task;
   int jobs = 0, retries = 0, cases_per_task = 1;
   double timeout_s = 0;
-  bool dry_run = false, json = false, status = false, no_page = false, quiet = false, uses_slurm = false;
+  bool dry_run = false, json = false, status = false, no_page = false, quiet = false, uses_slurm = false;  // the text may be empty
   std::vector<std::string> case_words;
 };
 
@@ -49,8 +49,7 @@ void add_options(CLI::App& command, BatchArguments& a) {
   command.add_option("--timeout", a.timeout_s, "of each case, s (default: none)")->check(number_in(1e-3, 1e9, "a number above 0"));
   command.add_option("--max-memory", a.memory, "what all cases at once may take: 12GB (default: what is free)");
   command.add_option("--case-memory", a.case_memory, "what each case may take: 4GB (default: what all may)");
-  command.add_option("--slurm", a.slurm, "submit to Slurm instead of running here; options of sbatch in one text: \"--partition=long --account=x\" (\"\" for none)")
-      ->expected(0, 1);
+  command.add_option("--slurm", a.slurm, "submit to Slurm instead of running here; options of sbatch in one text: \"--partition=long --account=x\" (\"\" for none)");
   command.add_option("--cases-per-task", a.cases_per_task, "with --slurm: cases in a row in each task of the array")->check(CLI::Range(1, 100000))->capture_default_str();
   command.add_flag("--status", a.status, "only how far the cohort is, here and in Slurm's queue");
   command.add_flag("--no-page", a.no_page, "leave out cohort.html and the other files of collect at the end");
@@ -335,6 +334,12 @@ void run(const BatchArguments& a) {
 
 std::vector<std::string> take_case_words(std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments[0] != "batch") return {};
+  // Options of sbatch are one value, though they look like options of ours.
+  for (std::size_t i = 1; i + 1 < arguments.size() && arguments[i] != "--"; ++i)
+    if (arguments[i] == "--slurm") {
+      arguments[i] += "=" + arguments[i + 1];
+      arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
   const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
   if (dashes == arguments.end()) return {};
   std::vector<std::string> words(dashes + 1, arguments.end());

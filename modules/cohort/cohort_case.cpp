@@ -30,6 +30,8 @@ std::string fault_of_id(const std::string& id) {
   constexpr std::size_t kLongest = 180;  // with what is put before and behind it, below the 255 bytes of a name
   if (id.empty()) return "is empty";
   if (id.find('/') != std::string::npos) return "holds a slash";
+  if (id.find(',') != std::string::npos) return "holds a comma";
+  if (id == "failed") return "has a meaning of its own for --only";
   if (id.find("..") != std::string::npos) return "holds '..'";
   if (id[0] == '.' || id[0] == '-') return std::string("begins with '") + id[0] + "'";
   if (id.size() > kLongest) return "is longer than " + std::to_string(kLongest) + " bytes";

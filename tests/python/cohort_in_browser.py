@@ -65,6 +65,7 @@ def rows(browser, shown=True):
 
 
 def chart_hash(browser):
+    browser.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50)));")
     return browser.execute_script("""
         const text = document.getElementById('strip').toDataURL();
         let hash = 5381;

@@ -17,7 +17,7 @@
     at('shown').textContent = shown + ' of ' + rows.length;
   }
   at('filter').addEventListener('input', filter);
-  at('show').addEventListener('input', filter);
+  at('show').addEventListener('change', filter);
   const heads = [...at('case-table').tHead.rows[0].cells];
   function sortBy(head) {
     const column = heads.indexOf(head), down = head.getAttribute('aria-sort') !== 'descending', sign = down ? -1 : 1;
@@ -86,7 +86,7 @@
       options: {
         animation: false, maintainAspectRatio: false, responsive: true, normalized: true,
         onClick: (event, found) => { if (found.length) point(chart.data.datasets[found[0].datasetIndex].data[found[0].index].place); },
-        plugins: {legend: {display: true}, tooltip: {callbacks: {label: item => data.ids[item.raw.place] + ': ' + figure(item.raw.y) + (metric.unit ? ' ' + metric.unit : '')}}},
+        plugins: {legend: {display: true, labels: {usePointStyle: true}}, tooltip: {callbacks: {label: item => data.ids[item.raw.place] + ': ' + figure(item.raw.y) + (metric.unit ? ' ' + metric.unit : '')}}},
         scales: {
           x: {type: 'linear', min: -0.5, max: Math.max(0.5, strips.length - 0.5), grid: {display: false}, afterBuildTicks: axis => { axis.ticks = strips.map((d, i) => ({value: i})); },
             ticks: {autoSkip: strips.length > 40, callback: v => strips[v] ? labelName(strips[v]) : ''}},
@@ -120,8 +120,8 @@
   }
   filter();
   if (at('metric').options.length) {
-    at('metric').addEventListener('input', choose);
-    at('logarithmic').addEventListener('input', draw);
+    at('metric').addEventListener('change', choose);
+    at('logarithmic').addEventListener('change', draw);
     choose();
   } else {
     at('distributions').hidden = true;
