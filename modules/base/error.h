@@ -10,7 +10,7 @@ enum class ErrorKind {
   input = 3,      ///< the input cannot be read or is invalid
   no_result = 4,  ///< no valid result exists or was found
   output = 5,     ///< the output cannot be written
-  outside_limits = 6,  ///< `validate`, `collect`: valid, but outside a limit
+  outside_limits = 6,  ///< `validate`: a valid mesh, but outside a limit
   internal = 70   ///< a bug of ours
 };
 
