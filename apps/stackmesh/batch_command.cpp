@@ -337,7 +337,7 @@ std::vector<std::string> take_case_words(std::vector<std::string>& arguments) {
   // Options of sbatch are one value, though they look like options of ours.
   for (std::size_t i = 1; i + 1 < arguments.size() && arguments[i] != "--"; ++i)
     if (arguments[i] == "--slurm") {
-      arguments[i] += "=" + arguments[i + 1];
+      arguments[i] += "=" + (arguments[i + 1].empty() ? " " : arguments[i + 1]);
       arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     }
   const auto dashes = std::find(arguments.begin(), arguments.end(), "--");

@@ -162,8 +162,8 @@ CaseLook look_at_case(const CohortCase& c, const CaseCommand& command, const std
 
 void foretell(CaseLook& look, const CohortCase& c) {
   // Fitted to 20 inputs of testdata and shared/data on one core, without other load (docs/cohorts.md).
-  constexpr double kBaseMb = 40, kMbPerMillionVoxels = 8, kMbPerTet = 0.65e-3;
-  constexpr double kBaseS = 0.3, kSecondsPerMillionVoxels = 0.08, kSecondsPerTet = 4e-5, kSecondsPerStitched = 2e-5;
+  constexpr double kBaseMb = 46, kMbPerMillionVoxels = 8, kMbPerTet = 0.65e-3;
+  constexpr double kBaseS = 0.4, kSecondsPerMillionVoxels = 0.08, kSecondsPerTet = 4e-5, kSecondsPerStitched = 2e-5;
   if (!(look.pixel_mm > 0)) return;
   const double pixels = look.area_mm2 / (look.pixel_mm * look.pixel_mm), stitched = 1.2 * pixels;
   double tets = std::min(1.4 * pixels, 150e3 + 50e3 * std::max(0.0, static_cast<double>(look.labels) - 1));

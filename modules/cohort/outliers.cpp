@@ -47,9 +47,10 @@ void judge_distribution(Distribution& d) {
   d.q1 = quantile(ascending, 0.25);
   d.median = quantile(ascending, 0.5);
   d.q3 = quantile(ascending, 0.75);
-  const double reach = 1.5 * (d.q3 - d.q1);
-  d.low = *std::lower_bound(ascending.begin(), ascending.end(), d.q1 - reach);
-  d.high = *(std::upper_bound(ascending.begin(), ascending.end(), d.q3 + reach) - 1);
+  const bool ratios = metric.logarithmic && d.q1 > 0;  // whiskers as the figure is compared
+  const double reach = 1.5 * (ratios ? std::log(d.q3 / d.q1) : d.q3 - d.q1);
+  d.low = *std::lower_bound(ascending.begin(), ascending.end(), ratios ? d.q1 * std::exp(-reach) : d.q1 - reach);
+  d.high = *(std::upper_bound(ascending.begin(), ascending.end(), ratios ? d.q3 * std::exp(reach) : d.q3 + reach) - 1);
   if (d.values.size() < kFewestValues) return;
 
   constexpr double kNormal = 1.4826;  // the median absolute deviation of a normal distribution to its standard deviation

@@ -27,7 +27,7 @@ struct Distribution {
   std::vector<std::size_t> cases;  ///< beside `values`
   std::vector<double> values;
   std::vector<double> scores;  ///< robust z, of the remarkable side only; 0 where there are too few values
-  double low = 0, q1 = 0, median = 0, q3 = 0, high = 0;  ///< low, high: furthest values within 1.5 interquartile ranges of the box
+  double low = 0, q1 = 0, median = 0, q3 = 0, high = 0;  ///< low, high: furthest values within 1.5 interquartile ranges of the box (of logarithms where these count)
 };
 
 /// A score above it marks an outlier (Iglewicz and Hoaglin 1993).

@@ -148,7 +148,7 @@ def cpu():
     return used.ru_utime + used.ru_stime
 
 
-def overhead(plan, table, program, manifest, count=40, rounds=3):
+def overhead(plan, table, program, manifest, count=12, rounds=3):
     """In turn, so that both see the same load; CPU time of all processes, as wall time tells of other users, too."""
     kinds = expectations(table)
     ids = [i for i in kinds if kinds[i][0] == "good"][:count]
