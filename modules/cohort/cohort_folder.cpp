@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <climits>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -215,7 +217,13 @@ CohortLock::CohortLock(const CohortFolder& folder, bool shared) {
   const std::string path = folder.own("lock");
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) fail_at(path, errno);
-  if (::flock(file_, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
+  // The processes of a runner that was killed may hold it for a moment longer.
+  bool held = false;
+  for (int tries = 0; tries < 20 && !held; ++tries) {
+    held = ::flock(file_, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0;
+    if (!held) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  if (!held) {
     const std::string holder = printable(bytes_of(path));
     ::close(file_);
     fail_usage("another run works in this folder" + (holder.empty() ? std::string() : ", " + holder), folder.path(), "wait until it has ended, or stop it");
