@@ -25,7 +25,7 @@ finding() { echo "  FINDING: $*"; findings=$((findings + 1)); }
 wants() { [[ ,$parts, == *,$1,* ]]; }
 table=()
 row() { table+=("$(printf '%-62s %s' "$1" "$2")"); echo "$1: $2"; }
-limits=(--timeout 150 --case-memory 500MB)
+limits=(--timeout 300 --case-memory 500MB)
 check() { /usr/bin/python3 "$here/check_cohort.py" "$@"; }
 
 [[ -s $work/cases.csv ]] || /usr/bin/python3 "$here/make_cohort.py" "$work" --cases "$cases" || exit 2
