@@ -178,7 +178,7 @@ void CohortFolder::finish(const std::string& work, const CaseRecord& record) con
       rename_folder(case_folder(record.id), work + "/" + kPrevious);
     }
   }
-  bring_to_disk(work + "/log.txt");
+  for (const auto& entry : fs::directory_iterator(work, ignored)) bring_to_disk(entry.path().string());
   AtomicFiles files;
   files.write(work + (record.is_done ? "/done" : "/failed.json"), [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
   files.commit();

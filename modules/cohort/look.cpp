@@ -161,7 +161,7 @@ CaseLook look_at_case(const CohortCase& c, const CaseCommand& command, const std
 }
 
 void foretell(CaseLook& look, const CohortCase& c) {
-  // Fitted to 20 inputs of testdata and shared/data on one core, without other load (docs/cohorts.md).
+  // Fitted to 19 inputs of testdata and shared/data on one core, without other load (docs/cohorts.md).
   constexpr double kBaseMb = 46, kMbPerMillionVoxels = 8, kMbPerTet = 0.65e-3;
   constexpr double kBaseS = 0.4, kSecondsPerMillionVoxels = 0.08, kSecondsPerTet = 4e-5, kSecondsPerStitched = 2e-5;
   if (!(look.pixel_mm > 0)) return;
