@@ -41,7 +41,7 @@ AuthInfo=socket=$folder/munge/socket
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 MpiDefault=none
-ReturnToService=2
+ReturnToService=1
 SlurmctldPort=$port1
 SlurmdPort=$port2
 SlurmctldPidFile=$folder/slurmctld.pid
