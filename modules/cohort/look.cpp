@@ -119,6 +119,22 @@ void measure(const Stack& stack, CaseLook& look) {
   if (!(look.pixel_mm > 0)) look.pixel_mm = gap_mm;
 }
 
+// Fitted to 19 inputs of testdata and shared/data on one core, without other load (docs/cohorts.md).
+constexpr double kBaseMb = 46, kMbPerMillionVoxels = 8, kMbPerTet = 0.65e-3;
+constexpr double kBaseS = 0.4, kSecondsPerMillionVoxels = 0.08, kSecondsPerTet = 4e-5, kSecondsPerStitched = 2e-5;
+
+/// Of an input that is no labels, such as a volume mesh for `fem`: by the sizes of its files.
+void foretell_unread(CaseLook& look, const CohortCase& c) {
+  constexpr double kMbPerMbOfFile = 10;
+  look.memory_mb = kBaseMb;
+  look.time_s = kBaseS;
+  for (const std::string& input : c.inputs) {
+    std::error_code none;
+    const auto bytes = std::filesystem::file_size(input, none);
+    if (!none) look.memory_mb += kMbPerMbOfFile * static_cast<double>(bytes) / 1e6;
+  }
+}
+
 }  // namespace
 
 std::string key_of_case(const CohortCase& c, const CaseCommand& command, const std::string& input_sha256) {
@@ -156,14 +172,12 @@ CaseLook look_at_case(const CohortCase& c, const CaseCommand& command, const std
     foretell(look, c);
   } catch (const std::exception& e) {
     look.fault = e.what();
+    foretell_unread(look, c);
   }
   return look;
 }
 
 void foretell(CaseLook& look, const CohortCase& c) {
-  // Fitted to 19 inputs of testdata and shared/data on one core, without other load (docs/cohorts.md).
-  constexpr double kBaseMb = 46, kMbPerMillionVoxels = 8, kMbPerTet = 0.65e-3;
-  constexpr double kBaseS = 0.4, kSecondsPerMillionVoxels = 0.08, kSecondsPerTet = 4e-5, kSecondsPerStitched = 2e-5;
   if (!(look.pixel_mm > 0)) return;
   const double pixels = look.area_mm2 / (look.pixel_mm * look.pixel_mm), stitched = 1.2 * pixels;
   double tets = std::min(1.4 * pixels, 150e3 + 50e3 * std::max(0.0, static_cast<double>(look.labels) - 1));
