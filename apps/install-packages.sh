@@ -19,6 +19,7 @@ tests=(
   doxygen texlive-binaries # the reference of the public headers; bibtex for its bibliography
   python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-pil python3-vtk9 python3-meshio python3-h5py python3-jsonschema gmsh calculix-ccx
   chromium chromium-driver python3-selenium # opens the HTML report
+  slurmctld slurmd slurm-client munge snakemake # engines that cohorts are run by
 )
 pictures=(python3-vtk9 xvfb xauth libgl1-mesa-dri)
 

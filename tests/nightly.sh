@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# What takes too long for every change: sanitized tests, many random stacks with enhancement, fuzzers, kills at random instants, full disks, little memory. Each part can be
+# What takes too long for every change: sanitized tests, many random stacks with enhancement, fuzzers, kills at random instants, full disks, little memory, a cohort. Each part can be
 # shortened, and 0 leaves it out; the last lines are one table of what was run and what was found. Logs are in build/nightly.
-#   tests/nightly.sh [--stacks N] [--fuzz SECONDS] [--kills N] [--disks N] [--memory 0|1] [--sanitized REGEX|none] [--threads REGEX|none]
-# Defaults: 100,000 stacks, 600 s for each fuzzer, 100 kills, 20 disks, memory with the shared lungs and skull where they are, the whole suite under the address and
-# undefined-behaviour sanitizers, what runs in parallel under the thread sanitizer. Ten minutes' try: --stacks 100 --fuzz 10 --kills 6 --disks 4 --memory 0 --sanitized none --threads none
+#   tests/nightly.sh [--stacks N] [--fuzz SECONDS] [--kills N] [--disks N] [--memory 0|1] [--cohort N] [--sanitized REGEX|none] [--threads REGEX|none]
+# Defaults: 100,000 stacks, 600 s for each fuzzer, 100 kills, 20 disks, memory with the shared lungs and skull where they are, a cohort of 200 cases, the whole suite under the address and
+# undefined-behaviour sanitizers, what runs in parallel under the thread sanitizer. Ten minutes' try: --stacks 100 --fuzz 10 --kills 6 --disks 4 --memory 0 --cohort 0 --sanitized none --threads none
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-stacks=100000 fuzz=600 kills=100 disks=20 memory=1 sanitized=. threads='Parallel|SameBytes|WhateverTheThreadCount|AnyThreads|FillVolume'
+stacks=100000 fuzz=600 kills=100 disks=20 memory=1 cohort=200 sanitized=. threads='Parallel|SameBytes|WhateverTheThreadCount|AnyThreads|FillVolume'
 while [[ $# -gt 0 ]]; do
   [[ $# -gt 1 ]] || { echo "tests/nightly.sh: error: $1 needs a value" >&2; exit 2; }
   case $1 in
@@ -15,6 +15,7 @@ while [[ $# -gt 0 ]]; do
     --kills) kills=$2 ;;
     --disks) disks=$2 ;;
     --memory) memory=$2 ;;
+    --cohort) cohort=$2 ;;
     --sanitized) sanitized=$2 ;;
     --threads) threads=$2 ;;
     *) sed -n '2,7p' "$0" >&2; exit 2 ;;
@@ -50,6 +51,7 @@ if [[ $memory != 0 ]]; then
   for f in ../shared/data/lung_lr_cip/lungs_32sections_8p5mm.nii.gz ../shared/data/skull_ct_invesalius/bone_mask.nii.gz; do [[ ! -e $f ]] || inputs+=(--input "$f"); done
   part memory "5 bounds" '^memory:' bash tests/robustness/ends.sh --memory "${inputs[@]}"
 fi
+[[ $cohort == 0 ]] || part cohort "$cohort cases" 'findings' bash tests/robustness/cohort.sh --cases "$cohort"
 sanitizer() { # sanitizer PRESET REGEX
   cmake --preset "$1" -D STACKMESH_TESTS=ON -D STACKMESH_BENCHMARKS=OFF && cmake --build --preset "$1" --parallel "$jobs" &&
     TSAN_OPTIONS="suppressions=$PWD/tests/robustness/threads.supp ignore_noninstrumented_modules=1" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 \

@@ -137,13 +137,14 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
 
 }  // namespace
 
-void add_fem_command(CLI::App& program) {
+void add_fem_command(CLI::App& program, Purpose purpose) {
   CLI::App* command = program.add_subcommand("fem", "Labels, or a volume mesh, to a solver model: sets, materials, deck");
   const MeshOptionSource mesh = add_mesh_options(*command, 2);
   auto a = std::make_shared<FemArguments>();
   add_options(*command, *a);
-  command->callback([a, command, mesh] {
+  command->callback([a, command, mesh, purpose] {
     const FemRunOptions options = to_options(*command, *a, mesh.options());
+    if (purpose == Purpose::check) return;
     const auto progress = mesh.progress();
     const RunReport report = run_fem(options, *progress);
     if (mesh.quiet()) return;

@@ -90,6 +90,9 @@ int run(int argc, char** argv) {
   stackmesh::app::add_info_command(program);
   stackmesh::app::add_validate_command(program);
   std::vector<std::string> arguments(argv + 1, argv + argc);
+  const std::vector<std::string> case_words = stackmesh::app::take_case_words(arguments);
+  stackmesh::app::add_batch_command(program, case_words);
+  stackmesh::app::add_collect_command(program);
   if (arguments == std::vector<std::string>{"--xml"}) {
     std::fputs(stackmesh::app::slicer_description().c_str(), stdout);
     return 0;

@@ -218,12 +218,13 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
   for (const std::string& o : outputs) std::printf("written  %s\n", printable(o).c_str());
 }
 
-void add(CLI::App& program, const char* name, const char* description, Target target) {
+void add(CLI::App& program, const char* name, const char* description, Target target, Purpose purpose) {
   CLI::App* command = program.add_subcommand(name, description);
   auto a = std::make_shared<MeshArguments>();
   add_options(*command, *a, target);
-  command->callback([a, command, target] {
+  command->callback([a, command, target, purpose] {
     const MeshRunOptions options = to_options(*command, *a, target);
+    if (purpose == Purpose::check) return;
     const auto progress = a->terminal.make_progress();
     const RunReport report = run_mesh(options, *progress);
     if (!a->return_parameters.empty())
@@ -246,7 +247,9 @@ MeshOptionSource add_mesh_options(CLI::App& command, int default_order) {
           [a] { return a->terminal.quiet; }};
 }
 
-void add_mesh_command(CLI::App& program) { add(program, "mesh", "Label stack to a verified volume mesh (and its surface)", Target::volume); }
-void add_surface_command(CLI::App& program) { add(program, "surface", "Label stack to a verified surface", Target::surface); }
+void add_mesh_command(CLI::App& program, Purpose purpose) {
+  add(program, "mesh", "Label stack to a verified volume mesh (and its surface)", Target::volume, purpose);
+}
+void add_surface_command(CLI::App& program, Purpose purpose) { add(program, "surface", "Label stack to a verified surface", Target::surface, purpose); }
 
 }  // namespace stackmesh::app

@@ -72,20 +72,28 @@ std::string first_value(const char* path, const std::string& key) {
 
 }  // namespace
 
-Provenance find_provenance(const std::vector<std::string>& input_paths) {
-  Provenance p;
+InputDigest digest_of_input(const std::vector<std::string>& input_paths) {
   std::vector<std::string> files;
   for (const std::string& path : input_paths) add_files(path, files);
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
-  p.input_files = files.size();
+  InputDigest digest;
+  digest.files = files.size();
   if (files.size() == 1) {
-    p.input_sha256 = sha256_of_file(files[0]);
+    digest.sha256 = sha256_of_file(files[0]);
   } else if (!files.empty()) {
     Sha256 sum;
     for (const std::string& f : files) sum.add(sha256_of_file(f) + "  " + fs::path(f).filename().string() + "\n");
-    p.input_sha256 = sum.hex();
+    digest.sha256 = sum.hex();
   }
+  return digest;
+}
+
+Provenance find_provenance(const std::vector<std::string>& input_paths) {
+  Provenance p;
+  const InputDigest input = digest_of_input(input_paths);
+  p.input_sha256 = input.sha256;
+  p.input_files = input.files;
   p.program_sha256 = sha256_of_file("/proc/self/exe");
 #if defined(__clang__)
   p.compiler = "clang " __clang_version__;

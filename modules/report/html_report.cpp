@@ -11,32 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON that may stand in a script element: nothing in it can end the element.
-std::string for_script(const std::string& json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') out += "\\u003c";
-    else if (c == '>') out += "\\u003e";
-    else if (c == '&') out += "\\u0026";
-    else out += c;
-  }
-  return out;
-}
-
-/// Replaces each {{name}} of the page once; what is put in is not looked at again.
-std::string filled(const std::string& page, const std::map<std::string, std::string>& parts) {
-  std::string out;
-  std::size_t at = 0;
-  for (std::size_t open; (open = page.find("{{", at)) != std::string::npos;) {
-    const std::size_t close = page.find("}}", open);
-    out.append(page, at, open - at);
-    out += parts.at(page.substr(open + 2, close - open - 2));
-    at = close + 2;
-  }
-  return out.append(page, at, std::string::npos);
-}
-
 std::string base_name(const std::string& path) {
   const std::size_t end = path.find_last_not_of('/');
   if (end == std::string::npos) return path;

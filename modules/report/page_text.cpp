@@ -237,6 +237,30 @@ std::string grouped(std::uint64_t value) {
   return text;
 }
 
+std::string for_script(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') out += "\\u003c";
+    else if (c == '>') out += "\\u003e";
+    else if (c == '&') out += "\\u0026";
+    else out += c;
+  }
+  return out;
+}
+
+std::string filled(const std::string& page, const std::map<std::string, std::string>& parts) {
+  std::string out;
+  std::size_t at = 0;
+  for (std::size_t open; (open = page.find("{{", at)) != std::string::npos;) {
+    const std::size_t close = page.find("}}", open);
+    out.append(page, at, open - at);
+    out += parts.at(page.substr(open + 2, close - open - 2));
+    at = close + 2;
+  }
+  return out.append(page, at, std::string::npos);
+}
+
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) switch (c) {
