@@ -12,6 +12,7 @@ program=(
   libexodusii-dev libmedc-dev # .exo and .med; Debian builds both upon Open MPI, which comes along and is not used
   libtbb-dev libcli11-dev nlohmann-json3-dev libpugixml-dev
   libjs-three libjs-chart.js # inside the HTML report
+  python3-dev python3-pybind11 pybind11-dev python3-numpy # the Python module
 )
 tests=(
   libgtest-dev libbenchmark-dev
