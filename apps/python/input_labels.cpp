@@ -20,7 +20,7 @@ VoxelType type_of(const py::dtype& type, const std::string& name) {
   if (kind == 'i') return bytes == 1 ? VoxelType::i8 : bytes == 2 ? VoxelType::i16 : bytes == 4 ? VoxelType::i32 : VoxelType::i64;
   if (kind == 'f' && bytes == 4) return VoxelType::f32;
   if (kind == 'f' && bytes == 8) return VoxelType::f64;
-  fail_input("numbers of type " + std::string(py::str(type)) + " are no labels", name, "give whole numbers from 0");
+  fail_input("numbers of type " + std::string(py::str(static_cast<const py::object&>(type))) + " are no labels", name, "give whole numbers from 0");
 }
 
 }  // namespace

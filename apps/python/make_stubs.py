@@ -4,6 +4,7 @@
 import inspect
 import sys
 
+sys.path.pop(0)  # the folder of this script holds the package's text without its compiled half
 import stackmesh
 from stackmesh import _options
 
