@@ -30,7 +30,7 @@ def _native(array, where):
         array = array.astype(np.float64 if array.dtype.itemsize > 8 else np.float32)
     elif kind not in "iuf":
         _fail(f"numbers of type {array.dtype} are no labels", where, "give whole numbers from 0")
-    return np.asfortranarray(array, dtype=array.dtype.newbyteorder("="))
+    return np.asarray(array, dtype=array.dtype.newbyteorder("="), order="F")
 
 
 def _affine(affine, where):
