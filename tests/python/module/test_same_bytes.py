@@ -116,8 +116,8 @@ class SameBytes(FolderTest):
     def test_fem(self):
         femur, law = testdata("femur.nii.gz"), testdata("femur_law.json")
         names = testdata("femur_names.ctbl")
-        report = stackmesh.fem(femur, output=self.path("py.inp"), materials=law, names=names, edge_length=6.0)
-        command_line("fem", femur, "-o", self.path("cli.inp"), "--materials", law, "--names", names, "--edge-length", "6.0")
+        report = stackmesh.fem(femur, output=self.path("py.inp"), materials=law, names=names, edge_length=14, caps="flat", interpolate=0)
+        command_line("fem", femur, "-o", self.path("cli.inp"), "--materials", law, "--names", names, "--edge-length", "14", "--caps", "flat", "--interpolate", "0")
         self.assertEqual(read_bytes(self.path("py.inp")).replace(b"py.inp", b"cli.inp"), read_bytes(self.path("cli.inp")))
         self.assertEqual(report["fem"]["order"], 2)
 
