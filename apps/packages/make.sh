@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Makes the Debian packages stackmesh, libstackmesh-dev and python3-stackmesh in build/packages, and asks lintian about them where it is installed.
-#   apps/packages/make.sh [BUILD FOLDER]      default: build/packages/build
+#   apps/packages/make.sh [BUILD FOLDER]      default: build-packages
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-build=${1:-build/packages/build}
+build=${1:-build-packages}
 for needed in dpkg-shlibdeps dpkg-deb cpack; do
   command -v "$needed" >/dev/null || { echo "make.sh: error: '$needed' is missing; install dpkg-dev and cmake" >&2; exit 1; }
 done

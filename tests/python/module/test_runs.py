@@ -35,7 +35,7 @@ def memory_kb():
 
 
 def workers_of(pid):
-    """Processes named stackmesh-tetgen that say they are of that process."""
+    """Processes named stackmesh-tetgen (of which Linux keeps 15 letters) that say they are of that process."""
     found = []
     for name in os.listdir("/proc"):
         if not name.isdigit():
@@ -47,7 +47,7 @@ def workers_of(pid):
                 environ = f.read()
         except OSError:
             continue
-        if command == "stackmesh-tetgen" and f"STACKMESH_TETGEN_WORKER={pid}".encode() in environ.split(b"\0"):
+        if command == "stackmesh-tetge" and f"STACKMESH_TETGEN_WORKER={pid}".encode() in environ.split(b"\0"):
             found.append(int(name))
     return found
 
