@@ -13,6 +13,7 @@ program=(
   libssl-dev # libcrypto, for digests
   libtbb-dev libcli11-dev nlohmann-json3-dev libpugixml-dev
   libjs-three libjs-chart.js # inside the HTML report
+  python3-dev python3-pybind11 pybind11-dev python3-numpy # the Python module
 )
 tests=(
   libgtest-dev libbenchmark-dev

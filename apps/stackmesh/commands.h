@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "base/monitor.h"
+#include "pipeline/fem_run.h"
 #include "pipeline/mesh_run.h"
+#include "pipeline/validate_run.h"
 
 namespace stackmesh::app {
 
@@ -30,6 +32,25 @@ struct MeshOptionSource {
   std::function<std::unique_ptr<Monitor>()> progress;
   std::function<bool()> quiet;
 };
-MeshOptionSource add_mesh_options(CLI::App& command, int default_order);
+MeshOptionSource add_mesh_options(CLI::App& command, int default_order, Target target = Target::volume);
+
+/// All options of `fem`, those of `mesh` among them.
+struct FemOptionSource {
+  std::function<FemRunOptions()> options;  ///< @throws Error(usage)
+  std::function<std::unique_ptr<Monitor>()> progress;
+  std::function<bool()> quiet;
+};
+FemOptionSource add_fem_options(CLI::App& command);
+
+/// All options of `validate`.
+struct ValidateOptionSource {
+  std::function<ValidateRunOptions()> options;  ///< @throws Error(usage), Error(input)
+  std::function<std::unique_ptr<Monitor>()> progress;
+  std::function<bool()> quiet;
+};
+ValidateOptionSource add_validate_options(CLI::App& command);
+
+/// What `info --json` prints of an input. @throws Error(input), Error(usage)
+std::string info_json(const InputOptions& input);
 
 }  // namespace stackmesh::app

@@ -137,17 +137,23 @@ void print_summary(const RunReport& r, const std::vector<std::string>& outputs) 
 
 }  // namespace
 
+FemOptionSource add_fem_options(CLI::App& command) {
+  const MeshOptionSource mesh = add_mesh_options(command, 2);
+  auto a = std::make_shared<FemArguments>();
+  add_options(command, *a);
+  CLI::App* const app = &command;
+  return {[a, app, mesh] { return to_options(*app, *a, mesh.options()); }, mesh.progress, mesh.quiet};
+}
+
 void add_fem_command(CLI::App& program, Purpose purpose) {
   CLI::App* command = program.add_subcommand("fem", "Labels, or a volume mesh, to a solver model: sets, materials, deck");
-  const MeshOptionSource mesh = add_mesh_options(*command, 2);
-  auto a = std::make_shared<FemArguments>();
-  add_options(*command, *a);
-  command->callback([a, command, mesh, purpose] {
-    const FemRunOptions options = to_options(*command, *a, mesh.options());
+  const FemOptionSource fem = add_fem_options(*command);
+  command->callback([fem, purpose] {
+    const FemRunOptions options = fem.options();
     if (purpose == Purpose::check) return;
-    const auto progress = mesh.progress();
+    const auto progress = fem.progress();
     const RunReport report = run_fem(options, *progress);
-    if (mesh.quiet()) return;
+    if (fem.quiet()) return;
     print_warnings(report.warnings);
     print_summary(report, options.mesh.outputs);
   });

@@ -75,7 +75,30 @@ void print(const Input& input, const Stack& s, const std::array<double, 3>& made
   }
 }
 
+/// An input as it is described.
+struct Read {
+  Input input;
+  Stack sections;  ///< of contours
+  std::array<double, 3> made_mm = {0, 0, 0};
+};
+
+Read read(const InputOptions& options) {
+  Read r;
+  r.input = read_input(options);
+  if (!r.input.volume) {
+    r.sections = drawn_sections(r.input);
+    return r;
+  }
+  r.made_mm = r.input.volume->spacing_mm;
+  if (const auto grid = find_true_grid(*r.input.volume, 0)) r.made_mm = grid->volume.spacing_mm;
+  return r;
+}
+
+std::string to_json(const Read& r) { return describe(r.input, r.sections, r.made_mm).dump(1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
+
+std::string info_json(const InputOptions& input) { return to_json(read(input)); }
 
 void add_info_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("info", "Dimensions, spacing, direction and labels of an input");
@@ -84,19 +107,13 @@ void add_info_command(CLI::App& program) {
   input->add_to(*command, false);
   command->add_flag("--json", *json, "as JSON");
   command->callback([input, json] {
-    Input read = read_input(input->options());
-    const Stack sections = read.volume ? Stack() : drawn_sections(read);
-    std::array<double, 3> made_mm = {0, 0, 0};
-    if (read.volume) {
-      made_mm = read.volume->spacing_mm;
-      if (const auto grid = find_true_grid(*read.volume, 0)) made_mm = grid->volume.spacing_mm;
-    }
+    const Read r = read(input->options());
     if (*json) {
-      std::printf("%s\n", describe(read, sections, made_mm).dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+      std::printf("%s\n", to_json(r).c_str());
       return;
     }
-    print(read, sections, made_mm);
-    print_warnings(read.warnings);
+    print(r.input, r.sections, r.made_mm);
+    print_warnings(r.input.warnings);
   });
 }
 

@@ -238,12 +238,12 @@ void add(CLI::App& program, const char* name, const char* description, Target ta
 
 }  // namespace
 
-MeshOptionSource add_mesh_options(CLI::App& command, int default_order) {
+MeshOptionSource add_mesh_options(CLI::App& command, int default_order, Target target) {
   auto a = std::make_shared<MeshArguments>();
   a->order = default_order;
-  add_options(command, *a, Target::volume);
+  add_options(command, *a, target);
   CLI::App* const app = &command;
-  return {[a, app] { return to_options(*app, *a, Target::volume); }, [a] { return a->terminal.make_progress(); },
+  return {[a, app, target] { return to_options(*app, *a, target); }, [a] { return a->terminal.make_progress(); },
           [a] { return a->terminal.quiet; }};
 }
 

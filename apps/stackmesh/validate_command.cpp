@@ -72,32 +72,37 @@ void fail_by_verdict(const std::vector<RunReport>& reports) {
 
 }  // namespace
 
+ValidateOptionSource add_validate_options(CLI::App& command) {
+  auto a = std::make_shared<ValidateArguments>();
+  command.add_option("MESH", a->meshes, "surface or volume meshes: .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh; several are compared")->required();
+  command.add_option("--against", a->against, "label volume, folder or glob of slices, masks, or .cnt files that the mesh stands for");
+  command.add_option("--report", a->reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
+  command.add_option("--label", a->labels, "labels to judge: 1,4,7-9,femur_left; one label: what a mesh without labels stands for");
+  command.add_option("--void,--keep-sets", a->voids, "labels that the mesh leaves empty");
+  command.add_flag("--merge", a->merge, "the selected labels are one");
+  command.add_option("--limits", a->limits, "JSON file with other limits than the default");
+  command.add_option("--mesh-space,--space", a->space, "frame of the meshes: lps, ras, image (indices times spacing, 0 the first voxel's centre), or auto: their own mark, else what overlaps best")->capture_default_str();
+  command.add_option("--label-array", a->array, "cell array of the mesh that holds the labels");
+  command.add_option("--spacing", a->spacing, "voxel size of PNG/TIFF slices, X,Y,Z in mm");
+  command.add_flag("--as-stored", a->as_stored, "take labels that are stored finer than they were made as they are stored");
+  command.add_flag("--allow-outside", a->allow_outside, "a detached header (.nhdr, .mhd) may name data files outside of its own folder");
+  add_memory_option(command);
+  command.add_option("--axis", a->axis, "stacking axis: auto, x, y or z")->capture_default_str();
+  command.add_flag("--write-defects", a->write_defects, "NAME.defects.vtp with the offending triangles, beside the report");
+  command.add_option("--defects", a->defects, "the same, into this folder");
+  command.add_option("--threads", a->threads, "threads; 0 is all")->check(CLI::Range(0, 4096))->capture_default_str();
+  a->terminal.add_to(command);
+  return {[a] { return to_options(*a); }, [a] { return a->terminal.make_progress(); }, [a] { return a->terminal.quiet; }};
+}
+
 void add_validate_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("validate", "Judge meshes of any program, on their own and against the labels they stand for");
-  auto a = std::make_shared<ValidateArguments>();
-  command->add_option("MESH", a->meshes, "surface or volume meshes: .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh; several are compared")->required();
-  command->add_option("--against", a->against, "label volume, folder or glob of slices, masks, or .cnt files that the mesh stands for");
-  command->add_option("--report", a->reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
-  command->add_option("--label", a->labels, "labels to judge: 1,4,7-9,femur_left; one label: what a mesh without labels stands for");
-  command->add_option("--void,--keep-sets", a->voids, "labels that the mesh leaves empty");
-  command->add_flag("--merge", a->merge, "the selected labels are one");
-  command->add_option("--limits", a->limits, "JSON file with other limits than the default");
-  command->add_option("--mesh-space,--space", a->space, "frame of the meshes: lps, ras, image (indices times spacing, 0 the first voxel's centre), or auto: their own mark, else what overlaps best")->capture_default_str();
-  command->add_option("--label-array", a->array, "cell array of the mesh that holds the labels");
-  command->add_option("--spacing", a->spacing, "voxel size of PNG/TIFF slices, X,Y,Z in mm");
-  command->add_flag("--as-stored", a->as_stored, "take labels that are stored finer than they were made as they are stored");
-  command->add_flag("--allow-outside", a->allow_outside, "a detached header (.nhdr, .mhd) may name data files outside of its own folder");
-  add_memory_option(*command);
-  command->add_option("--axis", a->axis, "stacking axis: auto, x, y or z")->capture_default_str();
-  command->add_flag("--write-defects", a->write_defects, "NAME.defects.vtp with the offending triangles, beside the report");
-  command->add_option("--defects", a->defects, "the same, into this folder");
-  command->add_option("--threads", a->threads, "threads; 0 is all")->check(CLI::Range(0, 4096))->capture_default_str();
-  a->terminal.add_to(*command);
-  command->callback([a] {
-    const ValidateRunOptions options = to_options(*a);
-    const auto progress = a->terminal.make_progress();
+  const ValidateOptionSource validate = add_validate_options(*command);
+  command->callback([validate] {
+    const ValidateRunOptions options = validate.options();
+    const auto progress = validate.progress();
     const std::vector<RunReport> reports = run_validate(options, *progress);
-    if (!a->terminal.quiet) {
+    if (!validate.quiet()) {
       for (std::size_t i = 0; i < reports.size(); ++i) {
         print_warnings(reports[i].warnings);
         std::printf("%s%s", i ? "\n" : "", printable_lines(text_summary(reports[i])).c_str());

@@ -166,9 +166,9 @@ CaseLook look_at_case(const CohortCase& c, const CaseCommand& command, const std
   CaseLook look = identify_case(c, command);
   if (look.key == known_key) return look;
   try {
-    const Input input = read_input(input_options(c));
+    Input input = read_input(input_options(c));
     if (input.volume) measure(*input.volume, look);
-    else measure(*input.sections, look);
+    else measure(drawn_sections(input), look);
     foretell(look, c);
   } catch (const std::exception& e) {
     look.fault = e.what();

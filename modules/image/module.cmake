@@ -13,7 +13,7 @@ foreach(target IN LISTS image_imported)
   endif()
 endforeach()
 stackmesh_module(image COMPONENT Io
-  SOURCES read_labels.cpp read_image.cpp read_contours.cpp read_label_table.cpp volume_file.cpp volume_header.cpp nrrd_header.cpp metaimage_header.cpp data_files.cpp voxel_data.cpp
+  SOURCES read_labels.cpp read_image.cpp read_contours.cpp read_label_table.cpp volume_file.cpp array_labels.cpp volume_header.cpp nrrd_header.cpp metaimage_header.cpp data_files.cpp voxel_data.cpp
           slices.cpp png_file.cpp tiff_file.cpp
           masks.cpp palette.cpp file_names.cpp dicom_dataset.cpp dicom_text.cpp dicom_nesting.cpp dicom_grid.cpp
           dicom_segmentation.cpp dicom_series.cpp dicom_pixels.cpp read_structure_set.cpp segments.cpp slicer_segments.cpp text_header.cpp

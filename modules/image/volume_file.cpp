@@ -12,24 +12,8 @@
 #include "image/volume_header.h"
 
 namespace stackmesh {
-namespace {
 
-const char* kind_of(FileFormat format) {
-  switch (format) {
-    case FileFormat::nifti:
-      return "nifti";
-    case FileFormat::nrrd:
-      return "nrrd";
-    case FileFormat::gipl:
-      return "gipl";
-    default:
-      return "metaimage";
-  }
-}
-
-/// The nearest orthonormal axes to nearly orthonormal ones (headers carry rounded cosines).
-/// @throws Error(input) where they are off by more than 1e-4.
-std::array<Vec3, 3> orthonormal(std::array<Vec3, 3> a, const std::string& path) {
+std::array<Vec3, 3> orthonormal_axes(std::array<Vec3, 3> a, const std::string& path) {
   double worst = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j) {
@@ -51,13 +35,28 @@ std::array<Vec3, 3> orthonormal(std::array<Vec3, 3> a, const std::string& path) 
   return a;
 }
 
+namespace {
+
+const char* kind_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::nifti:
+      return "nifti";
+    case FileFormat::nrrd:
+      return "nrrd";
+    case FileFormat::gipl:
+      return "gipl";
+    default:
+      return "metaimage";
+  }
+}
+
 template <class Volume>
 void take_grid(const VolumeHeader& header, Volume& volume, const std::string& path) {
   volume.size = header.size;
   volume.spacing_mm = header.spacing_mm;
   require_spacing(volume.spacing_mm.data(), 3, path);
   volume.origin_mm = header.origin_mm + Vec3{0, 0, 0};  // -0 becomes 0
-  volume.axes = orthonormal(header.axes, path);
+  volume.axes = orthonormal_axes(header.axes, path);
 }
 
 std::size_t voxels_of(const VolumeHeader& header) {

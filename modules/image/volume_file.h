@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <string>
 
 #include "image/file_names.h"
@@ -13,5 +14,9 @@ LabelVolume read_volume_file(const std::string& path, FileFormat format, const s
 
 /// Reads the intensities of one volume file. @throws Error(input)
 IntensityVolume read_intensity_file(const std::string& path, FileFormat format, bool allow_outside = false);
+
+/// The nearest orthonormal axes to nearly orthonormal ones (headers carry rounded cosines).
+/// @throws Error(input) naming `path` where they are off by more than 1e-4.
+std::array<Vec3, 3> orthonormal_axes(std::array<Vec3, 3> axes, const std::string& path);
 
 }  // namespace stackmesh

@@ -48,7 +48,9 @@ class FemRun {
   RunReport run() {
     std::vector<std::string> all = o_.mesh.outputs;
     all.insert(all.end(), o_.mesh.reports.begin(), o_.mesh.reports.end());
-    check_output_files(all, {o_.image, o_.materials, o_.mesh.input.paths[0]});
+    std::vector<std::string> read = o_.mesh.input.paths;
+    read.insert(read.end(), {o_.image, o_.materials});
+    check_output_files(all, read);
     // What the user wrote is read before anything long begins.
     if (!o_.materials.empty()) {
       plan_ = read_law(o_.materials);

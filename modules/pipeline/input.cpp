@@ -78,7 +78,7 @@ void read_structures(const InputOptions& options, const std::string& path, Input
   input.contours = std::move(set.structures);
 }
 
-void read_volume(const InputOptions& options, Input& input) {
+LabelVolume read_from_path(const InputOptions& options) {
   if (options.paths.size() != 1)
     fail_usage("more than one input", options.paths[1], "give one label volume, or several .cnt files");
   ReadOptions read;
@@ -86,7 +86,11 @@ void read_volume(const InputOptions& options, Input& input) {
   read.labels = options.labels;
   read.series = options.series;
   read.allow_outside = options.allow_outside;
-  LabelVolume volume = read_label_volume(options.paths[0], read);
+  return read_label_volume(options.paths[0], read);
+}
+
+void read_volume(const InputOptions& options, Input& input) {
+  LabelVolume volume = options.volume ? *options.volume : read_from_path(options);
   input.kind = volume.kind;
   input.warnings = volume.warnings;
   if (!options.names.empty()) apply_label_table(read_label_table(options.names), volume.labels);
@@ -96,6 +100,12 @@ void read_volume(const InputOptions& options, Input& input) {
   input.labels.assign(volume.labels.begin() + 1, volume.labels.end());
   input.anatomical = volume.anatomical;
   input.volume = std::move(volume);
+}
+
+/// Drawn contours in memory.
+void take_contours(const InputOptions& options, Input& input) {
+  input.kind = "contours";
+  for (const std::size_t k : LabelTable(*options.contours).resolve(options.labels)) input.contours.push_back((*options.contours)[k]);
 }
 
 /// The structure set that one path is, or whose folder it is; "" where there is none.
@@ -148,9 +158,14 @@ Input read_input(const InputOptions& asked) {
   const bool merges_later = asked.merge && !asked.voids.empty();
   if (merges_later) options.merge = false;
   Input input;
-  if (options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
-  for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
-  if (is_contour_input(options.paths[0])) read_contours(options, input);
+  const bool in_memory = options.volume || options.contours;
+  if (!in_memory && options.paths.empty()) fail_usage("no input", "", "name a label volume, a folder or a .cnt file");
+  if (in_memory) input.path = options.memory_name;
+  else
+    for (const std::string& p : options.paths) input.path += (input.path.empty() ? "" : " ") + p;
+  if (options.contours) take_contours(options, input);
+  else if (options.volume) read_volume(options, input);
+  else if (is_contour_input(options.paths[0])) read_contours(options, input);
   else if (const std::string file = structure_set_in(options.paths); !file.empty()) read_structures(options, file, input);
   else read_volume(options, input);
   if (!input.volume) {

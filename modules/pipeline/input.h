@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,6 +18,9 @@ namespace stackmesh {
 /// What to read, and which labels of it.
 struct InputOptions {
   std::vector<std::string> paths;  ///< one volume, DICOM file, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
+  std::shared_ptr<const LabelVolume> volume;                     ///< in place of paths: labels in memory
+  std::shared_ptr<const std::vector<LabelContours>> contours;    ///< in place of paths: drawn contours in memory, every label numbered
+  std::string memory_name;                                       ///< what messages and reports call what is in memory
   std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
   std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
   std::string series;                               ///< DICOM: series instance UID where a folder holds several

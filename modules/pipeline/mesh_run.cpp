@@ -24,7 +24,7 @@ class MeshRun {
  public:
   MeshRun(const MeshRunOptions& options, Monitor& progress, const ModelStage& model) : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
-  RunReport run(const LabelsStage& labels) {
+  RunReport run(const LabelsStage& labels, const MadeStage& made) {
     check_mesh_outputs(o_);
     report_.command = o_.command;
     report_.version = o_.version;
@@ -46,6 +46,7 @@ class MeshRun {
     files_.commit();
     if (refusal) throw Error(ErrorKind::no_result, refusal->problem, report_.input.path, refusal->mend);
     if (!valid) throw Error(ErrorKind::no_result, lost_detail_, report_.input.path, "leave --strict out to accept it");
+    if (made) made({std::move(mesh_.surface), std::move(mesh_.tets), write_options(), !input_.voids.empty()});
     return std::move(report_);
   }
 
@@ -83,7 +84,7 @@ class MeshRun {
   }
 
   /// --strict must know of a lost component, too.
-  bool wants_fidelity() const { return !o_.reports.empty() || o_.strict; }
+  bool wants_fidelity() const { return !o_.reports.empty() || o_.full_report || o_.strict; }
 
   MeshOptions mesh_options() const {
     MeshOptions m = o_.mesh;
@@ -155,7 +156,7 @@ class MeshRun {
     fill_label_rows(report_, fidelity_.empty() ? nullptr : &fidelity_);
     for (const LabelReport& row : report_.labels)
       if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
-    if (!o_.reports.empty()) give_verdicts();
+    if (!o_.reports.empty() || o_.full_report) give_verdicts();
   }
 
   void give_verdicts() {
@@ -302,8 +303,8 @@ class MeshRun {
 
 }  // namespace
 
-RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model, const LabelsStage& labels) {
-  return MeshRun(options, progress, model).run(labels);
+RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model, const LabelsStage& labels, const MadeStage& made) {
+  return MeshRun(options, progress, model).run(labels, made);
 }
 
 }  // namespace stackmesh

@@ -28,6 +28,7 @@ struct MeshRunOptions {
   std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format
   MeshWriteOptions write;                         ///< space and labels are set by the run
   bool strict = false;                            ///< a lost detail is an error
+  bool full_report = false;                       ///< fidelity and verdicts also where no report is written
   std::string command = "mesh", version;
   std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report
   std::vector<std::string> notes;                 ///< warnings of the caller, for the report
@@ -39,9 +40,20 @@ using ModelStage = std::function<void(MeshProduct product, RunReport& report, At
 /// Is told the labels that will be filled as soon as they are read, and may refuse by an Error.
 using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
 
+/// The mesh that a run has made, as it is written.
+struct MadeMesh {
+  InterfaceComplex surface;      ///< what write_surface() takes
+  std::optional<TetMesh> tets;   ///< what write_volume() takes
+  MeshWriteOptions write;
+  bool has_voids = false;        ///< then `surface` is what write.per_label asked for, and not the other form
+};
+
+/// Is given the mesh of a run that succeeded, in place of its being dropped.
+using MadeStage = std::function<void(MadeMesh made)>;
+
 /// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write. Everything
 /// that is written appears whole or not at all. With `model`, the verified volume goes there instead of into files.
 /// @throws Error: input, output, usage; no_result after the report (and the offending triangles) were written.
-RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model = {}, const LabelsStage& labels = {});
+RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model = {}, const LabelsStage& labels = {}, const MadeStage& made = {});
 
 }  // namespace stackmesh

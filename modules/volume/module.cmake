@@ -11,4 +11,4 @@ target_link_libraries(stackmesh_tetgen PUBLIC stackmesh_model PRIVATE ${TETGEN_L
 target_compile_definitions(stackmesh_tetgen PRIVATE TETLIBRARY)
 add_executable(stackmesh-tetgen volume/worker/main.cpp)
 target_link_libraries(stackmesh-tetgen PRIVATE stackmesh_tetgen)
-install(TARGETS stackmesh-tetgen RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/stackmesh)
+install(TARGETS stackmesh-tetgen RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/stackmesh COMPONENT program)
