@@ -133,7 +133,7 @@ TEST_F(CohortTest, ACaseThatTakesTooLongIsEndedAndTriedAgain) {
 
 TEST_F(CohortTest, ACaseHasItsOwnBoundOfMemory) {
   write("a.nrrd", box_volume(9, 6));
-  write("large.nrrd", box_volume(400, 400));
+  write("large.nrrd", box_volume(320, 320));
   write("cases.csv", "id,input\nlarge,large.nrrd\na,a.nrrd\n");
   EXPECT_EQ(batch({"--no-page", "--case-memory", "100MB"}).code, 4);
   EXPECT_NE(json("large.failed/failed.json")["reason"].get<std::string>().find("memory"), std::string::npos);
@@ -219,7 +219,9 @@ TEST_F(CohortTest, AStoppedRunGoesOnAndLosesNothing) {
     EXPECT_EQ(processes_with(cohort()), 0) << "orphans after signal " << signal;
     EXPECT_TRUE(fs::exists(in_cohort("a/done")));
     EXPECT_FALSE(fs::exists(in_cohort("slow")));
-    if (signal == SIGINT) EXPECT_EQ(names(), std::vector<std::string>{"a"}) << "a stopped run leaves no hidden folder";
+    if (signal == SIGINT) {
+      EXPECT_EQ(names(), std::vector<std::string>{"a"}) << "a stopped run leaves no hidden folder";
+    }
   }
   write("cases.csv", "id,input,edge-length\na,a.nrrd,\nslow,slow.nrrd,\nb,a.nrrd,2\n");  // now it is quick
   EXPECT_EQ(batch({"--no-page"}).code, 0);
