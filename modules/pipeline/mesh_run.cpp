@@ -556,6 +556,7 @@ class MeshRun {
         write_surface(files_, path, surface_, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);
       } else if (!model_) {
+        if (ends_with(path, ".mesh") && !mesh_->wedges.empty()) warn(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
         write_volume(files_, path, *mesh_, write_options());
       }
     }
