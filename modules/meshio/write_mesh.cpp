@@ -141,6 +141,10 @@ std::vector<std::string> losses_of(const std::string& path, const SolverModel& m
         losses.push_back(path + ": fibres that turn from element to element are not written; label " + std::to_string(m.label) + " gets an isotropic material");
     if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
   }
+  const bool pyramids = std::any_of(model.mesh.wedges.begin(), model.mesh.wedges.end(), [](const auto& w) { return is_pyramid(w); });
+  if (writer == write_medit && !model.mesh.wedges.empty()) losses.push_back(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
+  if (writer == write_inp && pyramids && !model.mesh.wedge_mid.empty())
+    losses.push_back(path + ": CalculiX has no pyramids; where layers end they are C3D15 with two corners at one point, which fit their neighbours within a few percent of the stress");
   const bool mesh_only = format->by_name == write_exodus || writer == write_med;
   if (mesh_only && !sets.steps.empty())
     losses.push_back(path + ": the format holds no load case; supports and loads are left out, their sets are there");

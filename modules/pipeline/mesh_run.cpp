@@ -228,6 +228,7 @@ class MeshRun {
         write_surface(files_, path, mesh_.surface, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);
       } else if (!model_) {
+        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty()) warn(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
         write_volume(files_, path, *mesh_.tets, write_options());
       }
     }

@@ -37,7 +37,7 @@ BY_TYPE = {
 # The attribute that names what a tag refers to, and what that is.
 REFERENCES = {"surface_load": ("surface", "Surface"), "discrete": ("discrete_set", "DiscreteSet"), "bc": ("node_set", "NodeSet"), "nodal_load": ("node_set", "NodeSet"), "contact": ("surface_pair", "SurfacePair"),
               "NodeData": ("node_set", "NodeSet"), "ElementData": ("elem_set", "Elements"), "SolidDomain": ("name", "Elements"), "ShellDomain": ("name", "Elements")}
-ELEMENTS = {"tet4": 4, "tet10": 10, "tri3": 3, "tri6": 6}
+ELEMENTS = {"tet4": 4, "tet10": 10, "penta6": 6, "penta15": 15, "pyra5": 5, "pyra13": 13, "tri3": 3, "tri6": 6}
 SECTIONS = {  # section: the children it may have, and the sections that must have been read before it
     "Module": ({"units"}, ()),
     "Control": ({"analysis", "time_steps", "step_size", "solver"}, ("Module",)),

@@ -103,8 +103,8 @@ def check(path):
             if f[1] != "" or int(f[0]) in nodes or (len(f) > 6 and f[6] not in ("", "123456")):
                 wrong.append(f"GRID {f[0]}")
             nodes[int(f[0])] = tuple(real(v) for v in f[2:5])
-        elif name in ("CTETRA", "CTRIA3", "CTRIA6"):
-            count = {"CTETRA": (4, 10), "CTRIA3": (3,), "CTRIA6": (6,)}[name]
+        elif name in ("CTETRA", "CPENTA", "CPYRAM", "CTRIA3", "CTRIA6"):
+            count = {"CTETRA": (4, 10), "CPENTA": (6, 15), "CPYRAM": (5, 13), "CTRIA3": (3,), "CTRIA6": (6,)}[name]
             v = [int(x) for x in f[2:] if x]
             if len(v) not in count or len(set(v)) != len(v) or any(x for x in f[2 + len(v):]):
                 wrong.append(f"{name} {f[0]}")
@@ -152,7 +152,7 @@ def check(path):
     if len(set(numbers)) != len(numbers):
         wrong.append("an element number is there twice")
     for number, (name, property_id, v) in elements.items():
-        of = (solids if name == "CTETRA" else shells).get(property_id)
+        of = (solids if name in ("CTETRA", "CPENTA", "CPYRAM") else shells).get(property_id)
         if of not in materials or not set(v) <= nodes.keys():
             wrong.append(f"{name} {number}: property, material or node is not there")
             break
@@ -163,7 +163,13 @@ def check(path):
         wrong.append("SPCD without SPC1")
     for number, face in pressures:  # a corner of the face, and the corner that is not on it
         corners = elements.get(number, ("", 0, []))[2][:4]
-        if elements.get(number, ("",))[0] != "CTETRA" or len(face) != 2 or not set(face) <= set(corners) or face[0] == face[1]:
+        kind = elements.get(number, ("",))[0]
+        if kind == "CPENTA" and len(face) == 1 and face[0] in elements[number][2][:6]:
+            continue  # a triangle: any of its corners
+        base = elements[number][2][:4] if kind == "CPYRAM" else []
+        if len(face) == 2 and set(face) <= set(base) and (base.index(face[0]) - base.index(face[1])) % 4 in (1, 3):
+            continue  # a triangle: the edge that it shares with the base
+        if kind != "CTETRA" or len(face) != 2 or not set(face) <= set(corners) or face[0] == face[1]:
             wrong.append(f"PLOAD4 on {number}")
     if any(v in held or v in followers for v in bound):
         wrong.append("a node that is bound to a point is held, or follows another")
