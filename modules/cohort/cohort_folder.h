@@ -80,6 +80,7 @@ class CohortFolder {
 /// Held while a run works in a folder, so that no two do. Released by the system whatever ends the process.
 class CohortLock {
  public:
+  /// @param folder whose lock it is
   /// @param shared for a run of single cases, several of which may go on at once
   /// @throws Error(usage) naming the process that holds it
   CohortLock(const CohortFolder& folder, bool shared);
