@@ -22,10 +22,7 @@ with open("pipe.nrrd", "wb") as f:  # the same array, for the command line
 print(stackmesh.__file__, femur, pipe, stackmesh._stackmesh.worker(), sep="\n")
 PYTHON
 python3 ten_lines.py "$data/femur.nii.gz"
-[[ $(python3 -c 'import stackmesh; with open("pipe.nrrd", "wb") as f:  # the same array, for the command line
-    f.write(b"NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 30 30 20\nspace directions: (1,0,0) (0,1,0) (0,0,2)\n"
-            b"kinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: (0,0,0)\n\n" + labels.astype("<i2").tobytes(order="F"))
-print(stackmesh.__file__)') == /usr/lib/python3/dist-packages/stackmesh/__init__.py ]]
+[[ $(python3 -c 'import stackmesh; print(stackmesh.__file__)') == /usr/lib/python3/dist-packages/stackmesh/__init__.py ]]
 sha256sum femur_py.vtu pipe_py.inp
 if command -v stackmesh >/dev/null; then
   stackmesh mesh "$data/femur.nii.gz" -o femur_cli.vtu --quiet

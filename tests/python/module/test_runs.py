@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy as np
 import stackmesh
@@ -187,6 +188,40 @@ class Told(FolderTest):
         stages = list(dict.fromkeys(stage for stage, _, _ in told))
         self.assertEqual([s for s in stages if s in ("contours", "stitch", "enhance", "volume")], ["contours", "stitch", "enhance", "volume"])
         self.assertTrue(all(0 <= done <= 1 and who == threading.get_ident() for _, done, who in told))
+
+    def test_progress_true_is_a_bar_or_lines(self):
+        import contextlib
+        import io
+        import types
+
+        said = io.StringIO()
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}), contextlib.redirect_stderr(said):
+            stackmesh.mesh(ball(), progress=True)
+        self.assertIn("stackmesh: stitch\n", said.getvalue())
+        bars = []
+
+        class Bar:
+            def __init__(self, **options):
+                self.shown, self.closed, self.total = [], False, options["total"]
+                bars.append(self)
+
+            def set_description(self, text):
+                self.text = text
+
+            def refresh(self):
+                self.shown.append((self.text, self.n))
+
+            def close(self):
+                self.closed = True
+
+        auto = types.ModuleType("tqdm.auto")
+        auto.tqdm = Bar
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": types.ModuleType("tqdm"), "tqdm.auto": auto}):
+            stackmesh.mesh(ball(), progress=True)
+            with self.assertRaises(stackmesh.Error):
+                stackmesh.mesh(ball(), spacing=1, caps="pointed", progress=True)
+        self.assertTrue(all(bar.closed for bar in bars))
+        self.assertIn(("volume", 100), bars[0].shown)
 
     def test_errors_carry_kind_place_and_mend(self):
         for call, kind, where in (
