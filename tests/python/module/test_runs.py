@@ -166,6 +166,51 @@ class Ended(FolderTest):
                 self.assertEqual(with_worker, len(busy) > 0)
                 self.assertLess(took, 2.0)  # half a second on a machine that does nothing else
 
+    def test_while_calculix_solves(self):
+        """fem(accuracy=...): the solver and its folder go, too."""
+        import shutil
+        import tempfile
+
+        if shutil.which("ccx") is None:
+            self.skipTest("NOT TESTED: needs calculix-ccx")
+        code = """
+import sys
+import stackmesh
+try:
+    stackmesh.fem(sys.argv[1] + "/femur.nii.gz", output="out.inp", materials=sys.argv[1] + "/femur_law.json", names=sys.argv[1] + "/femur_names.ctbl", edge_length=5, caps="flat", accuracy="1%")
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+        before = set(os.listdir(tempfile.gettempdir()))
+
+        def solvers(pid):
+            with open(f"/proc/{pid}/task/{pid}/children") as f:
+                children = f.read().split()
+            threads = [c for t in os.listdir(f"/proc/{pid}/task") for c in open(f"/proc/{pid}/task/{t}/children").read().split()]
+            return [c for c in set(children + threads) if open(f"/proc/{c}/comm").read().startswith("ccx")]
+
+        env = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+        process = subprocess.Popen([sys.executable, "-W", "ignore", "-c", code, testdata("")[:-1]], stdout=subprocess.PIPE, text=True, env=env, cwd=self.folder)
+        try:
+            running = []
+            while not running and process.poll() is None:
+                time.sleep(0.02)
+                try:
+                    running = solvers(process.pid)
+                except OSError:
+                    continue  # a thread or child that has ended meanwhile
+            self.assertTrue(running, "the solver was never seen")
+            sent = time.time()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.stdout.read().strip(), "interrupted")
+            self.assertLess(time.time() - sent, 2.0)
+            process.wait(60)
+        finally:
+            process.kill()
+        self.assertFalse(any(os.path.exists(f"/proc/{c}") for c in running))
+        self.assertEqual(os.listdir(self.folder), [])
+        self.assertEqual([n for n in set(os.listdir(tempfile.gettempdir())) - before if n.startswith("stackmesh_ccx")], [])
+
     def test_by_a_callback_that_raises(self):
         class Stop(Exception):
             pass
