@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "base/cancel.h"
 #include "validate/boundaries.h"
 #include "validate/check_bends.h"
 #include "validate/check_thickness.h"
@@ -175,10 +176,12 @@ void complete_report(RunReport& report, const Judged& j) {
   thick.threads = j.threads;
   thick.elements = report.limits.thin_elements;
   const std::vector<LabelThickness> thickness = check_thickness(*j.surface, thick);
+  stop_if_cancelled();
   fill_label_rows(report, j.fidelity);
   fill_thickness(report, thickness);
   const BendCheck bends = check_bends(*j.surface, j.threads);
   fill_bends(report, bends);
+  stop_if_cancelled();
   JudgeInput in;
   in.surface = &*report.surface;
   if (report.volume) in.volume = &*report.volume;
@@ -201,13 +204,17 @@ void complete_report(RunReport& report, const Judged& j) {
   nests.threads = j.threads;
   const std::vector<LabelTopology> topology = j.volume ? check_topology(*report.surface, *j.volume, nests) : j.sections ? check_topology(*report.surface, *j.sections, nests) : std::vector<LabelTopology>();
   if (j.volume || j.sections) in.topology = &topology;
+  stop_if_cancelled();
   report.verdicts = judge(in, report.limits);
   DefectOptions where;
   where.poor_angle_deg = report.limits.angle_warn_deg;
   where.poor_dihedral_deg = report.limits.dihedral_warn_deg;
   where.section_of = section_finder(j);
   report.defects = find_defects(*j.surface, *report.surface, j.mesh, in.volume, j.fidelity, where);
-  for (const LabelTopology& t : topology) add_handles(report, *j.surface, t, where.section_of);
+  for (const LabelTopology& t : topology) {
+    stop_if_cancelled();
+    add_handles(report, *j.surface, t, where.section_of);
+  }
   std::optional<Boundaries> pieces;
   for (const LabelTopology& t : topology) {
     if (!j.sections || t.implied_pieces <= 0 || t.pieces <= t.implied_pieces) continue;

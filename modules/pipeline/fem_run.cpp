@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/cancel.h"
 #include "base/error.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
@@ -46,6 +47,7 @@ class FemRun {
   FemRun(const FemRunOptions& options, Monitor& progress) : o_(options), progress_(progress) {}
 
   RunReport run() {
+    const CancelScope scope(&progress_);
     std::vector<std::string> all = o_.mesh.outputs;
     all.insert(all.end(), o_.mesh.reports.begin(), o_.mesh.reports.end());
     std::vector<std::string> read = o_.mesh.input.paths;

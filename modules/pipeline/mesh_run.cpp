@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/cancel.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/stage_clock.h"
@@ -25,6 +26,7 @@ class MeshRun {
   MeshRun(const MeshRunOptions& options, Monitor& progress, const ModelStage& model) : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
   RunReport run(const LabelsStage& labels, const MadeStage& made) {
+    const CancelScope scope(&progress_);
     check_mesh_outputs(o_);
     report_.command = o_.command;
     report_.version = o_.version;
@@ -224,6 +226,7 @@ class MeshRun {
     if (mesh_.tets) name_voids(mesh_.tets->faces, mesh_.behind);
     if (!input_.voids.empty()) mesh_.surface = written_surface();
     for (const std::string& path : o_.outputs) {
+      stop_if_cancelled();
       if (is_surface_format(path)) {
         write_surface(files_, path, mesh_.surface, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);

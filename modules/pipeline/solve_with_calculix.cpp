@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
+#include "base/cancel.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "meshio/read_frd.h"
@@ -70,15 +71,25 @@ int run(const std::string& folder, int threads, double timeout_s) {
   for (std::string& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);
   pid_t child = -1;
-  const int failed = posix_spawnp(&child, "ccx", &actions, nullptr, arguments.data(), environment.data());
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;  // a caller may have blocked signals on this thread
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const int failed = posix_spawnp(&child, "ccx", &actions, &attributes, arguments.data(), environment.data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) fail("could not be started", folder);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
   int status = 0;
   while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > end) {
+    const Monitor* const monitor = cancelling_monitor();
+    const bool cancelled = monitor != nullptr && monitor->cancelled();
+    if (cancelled || std::chrono::steady_clock::now() > end) {
       ::kill(child, SIGKILL);
       ::waitpid(child, &status, 0);
+      stop_if_cancelled();
       return -1;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "base/cancel.h"
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/text.h"
@@ -533,6 +534,7 @@ void describe_input(const Against& against, RunReport& report) {
 }  // namespace
 
 std::vector<RunReport> run_validate(const ValidateRunOptions& o, Monitor& progress) {
+  const CancelScope scope(&progress);
   check_names(o);
   RunReport start;
   start.command = "validate";

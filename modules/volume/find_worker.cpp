@@ -27,7 +27,7 @@ std::string find_worker() {
   if (const char* set = std::getenv("STACKMESH_WORKER"); set != nullptr && *set != '\0') return set;
   std::error_code ignored;
   std::vector<fs::path> places;
-  for (const fs::path& file : {fs::read_symlink("/proc/self/exe", ignored), own_file()}) {
+  for (const fs::path& file : {own_file(), fs::path(fs::read_symlink("/proc/self/exe", ignored))}) {
     if (file.empty()) continue;
     places.push_back(file.parent_path() / "stackmesh-tetgen");
     places.push_back(file.parent_path().parent_path() / "libexec/stackmesh/stackmesh-tetgen");

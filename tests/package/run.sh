@@ -22,7 +22,7 @@ done
 cmake -S "$here" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/installed" \
   -DCMAKE_DISABLE_FIND_PACKAGE_ITK=ON -DCMAKE_DISABLE_FIND_PACKAGE_DCMTK=ON >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 cmake --build "$work/build" >>"$work/log" 2>&1 || { tail -40 "$work/log"; exit 1; }
-worker=$(find "$work/installed" -name stackmesh-tetgen)
+worker=$(find "$work/installed/libexec" -name stackmesh-tetgen)
 STACKMESH_WORKER=$worker "$work/build/labels"
 "$work/build/drawn"
 "$work/installed/bin/stackmesh" --version

@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy as np
 import stackmesh
@@ -165,6 +166,51 @@ class Ended(FolderTest):
                 self.assertEqual(with_worker, len(busy) > 0)
                 self.assertLess(took, 2.0)  # half a second on a machine that does nothing else
 
+    def test_while_calculix_solves(self):
+        """fem(accuracy=...): the solver and its folder go, too."""
+        import shutil
+        import tempfile
+
+        if shutil.which("ccx") is None:
+            self.skipTest("NOT TESTED: needs calculix-ccx")
+        code = """
+import sys
+import stackmesh
+try:
+    stackmesh.fem(sys.argv[1] + "/femur.nii.gz", output="out.inp", materials=sys.argv[1] + "/femur_law.json", names=sys.argv[1] + "/femur_names.ctbl", edge_length=5, caps="flat", accuracy="1%")
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+        before = set(os.listdir(tempfile.gettempdir()))
+
+        def solvers(pid):
+            with open(f"/proc/{pid}/task/{pid}/children") as f:
+                children = f.read().split()
+            threads = [c for t in os.listdir(f"/proc/{pid}/task") for c in open(f"/proc/{pid}/task/{t}/children").read().split()]
+            return [c for c in set(children + threads) if open(f"/proc/{c}/comm").read().startswith("ccx")]
+
+        env = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+        process = subprocess.Popen([sys.executable, "-W", "ignore", "-c", code, testdata("")[:-1]], stdout=subprocess.PIPE, text=True, env=env, cwd=self.folder)
+        try:
+            running = []
+            while not running and process.poll() is None:
+                time.sleep(0.02)
+                try:
+                    running = solvers(process.pid)
+                except OSError:
+                    continue  # a thread or child that has ended meanwhile
+            self.assertTrue(running, "the solver was never seen")
+            sent = time.time()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.stdout.read().strip(), "interrupted")
+            self.assertLess(time.time() - sent, 2.0)
+            process.wait(60)
+        finally:
+            process.kill()
+        self.assertFalse(any(os.path.exists(f"/proc/{c}") for c in running))
+        self.assertEqual(os.listdir(self.folder), [])
+        self.assertEqual([n for n in set(os.listdir(tempfile.gettempdir())) - before if n.startswith("stackmesh_ccx")], [])
+
     def test_by_a_callback_that_raises(self):
         class Stop(Exception):
             pass
@@ -187,6 +233,40 @@ class Told(FolderTest):
         stages = list(dict.fromkeys(stage for stage, _, _ in told))
         self.assertEqual([s for s in stages if s in ("contours", "stitch", "enhance", "volume")], ["contours", "stitch", "enhance", "volume"])
         self.assertTrue(all(0 <= done <= 1 and who == threading.get_ident() for _, done, who in told))
+
+    def test_progress_true_is_a_bar_or_lines(self):
+        import contextlib
+        import io
+        import types
+
+        said = io.StringIO()
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}), contextlib.redirect_stderr(said):
+            stackmesh.mesh(ball(), progress=True)
+        self.assertIn("stackmesh: stitch\n", said.getvalue())
+        bars = []
+
+        class Bar:
+            def __init__(self, **options):
+                self.shown, self.closed, self.total = [], False, options["total"]
+                bars.append(self)
+
+            def set_description(self, text):
+                self.text = text
+
+            def refresh(self):
+                self.shown.append((self.text, self.n))
+
+            def close(self):
+                self.closed = True
+
+        auto = types.ModuleType("tqdm.auto")
+        auto.tqdm = Bar
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": types.ModuleType("tqdm"), "tqdm.auto": auto}):
+            stackmesh.mesh(ball(), progress=True)
+            with self.assertRaises(stackmesh.Error):
+                stackmesh.mesh(ball(), spacing=1, caps="pointed", progress=True)
+        self.assertTrue(all(bar.closed for bar in bars))
+        self.assertIn(("volume", 100), bars[0].shown)
 
     def test_errors_carry_kind_place_and_mend(self):
         for call, kind, where in (
