@@ -34,7 +34,8 @@ class Error(Exception):
 MESH_TYPES = {
     "is_volume": "bool", "space": 'Literal["lps", "ras", "none"]', "names": "Dict[int, str]", "colours": "Dict[int, Tuple[int, int, int]]",
     "points": "npt.NDArray[np.float64]", "triangles": "npt.NDArray[np.int32]", "triangle_labels": "npt.NDArray[np.int32]", "tets": "npt.NDArray[np.int32]",
-    "tet_mids": "npt.NDArray[np.int32]", "tet_labels": "npt.NDArray[np.int32]", "surface": '"Mesh"',
+    "tet_mids": "npt.NDArray[np.int32]", "tet_labels": "npt.NDArray[np.int32]",
+    "wedges": "npt.NDArray[np.int32]", "wedge_mids": "npt.NDArray[np.int32]", "wedge_labels": "npt.NDArray[np.int32]", "surface": '"Mesh"',
 }
 METHODS = '''    report: Dict[str, Any]
     def save(self, path: Path, *, per_label: Optional[bool] = None, msh2: Optional[bool] = None) -> None: ...

@@ -30,7 +30,11 @@ MeshData::MeshData(MadeMesh made) : write_(std::move(made.write)), has_voids_(ma
   tets_->tets = std::move(volume.tets);
   tets_->mid = std::move(volume.tet_mids);
   tets_->faces = std::move(volume.triangles);
+  tets_->wedges = std::move(volume.wedges);
+  tets_->wedge_mid = std::move(volume.wedge_mids);
   for (const LabelGroup& g : volume.labels) tets_->labels.resize(g.end, g.label);
+  const std::size_t tets = tets_->labels.size();
+  for (const LabelGroup& g : volume.labels) tets_->labels.resize(tets + g.wedge_end, g.label);
   labels_ = std::move(volume.named);
 }
 
@@ -71,8 +75,23 @@ py::array MeshData::tet_mids() const {
 }
 
 py::array MeshData::tet_labels() const {
-  const py::ssize_t n = tets_ ? static_cast<py::ssize_t>(tets_->labels.size()) : 0;
+  const py::ssize_t n = tets_ ? static_cast<py::ssize_t>(tets_->tets.size()) : 0;
   return view("i4", {n}, {sizeof(Label)}, n > 0 ? tets_->labels.data() : nullptr);
+}
+
+py::array MeshData::wedges() const {
+  const py::ssize_t n = tets_ ? static_cast<py::ssize_t>(tets_->wedges.size()) : 0;
+  return view("i4", {n, 6}, {6 * sizeof(std::int32_t), sizeof(std::int32_t)}, n > 0 ? tets_->wedges.data() : nullptr);
+}
+
+py::array MeshData::wedge_mids() const {
+  const py::ssize_t n = tets_ ? static_cast<py::ssize_t>(tets_->wedge_mid.size()) : 0;
+  return view("i4", {n, 9}, {9 * sizeof(std::int32_t), sizeof(std::int32_t)}, n > 0 ? tets_->wedge_mid.data() : nullptr);
+}
+
+py::array MeshData::wedge_labels() const {
+  const py::ssize_t n = tets_ ? static_cast<py::ssize_t>(tets_->wedges.size()) : 0;
+  return view("i4", {n}, {sizeof(Label)}, n > 0 ? tets_->labels.data() + tets_->tets.size() : nullptr);
 }
 
 void MeshData::save(const std::string& path, bool surface_only, std::optional<bool> per_label, std::optional<bool> msh2) const {

@@ -27,6 +27,9 @@ class MeshData : public std::enable_shared_from_this<MeshData> {
   pybind11::array tets() const;                         ///< (n, 4) int32
   pybind11::array tet_mids() const;                     ///< (n, 6) int32; n is 0 for linear tetrahedra
   pybind11::array tet_labels() const;                   ///< (n,) int32
+  pybind11::array wedges() const;                       ///< (n, 6) int32; of layers. Where corners 2 and 5 are one point it is a pyramid
+  pybind11::array wedge_mids() const;                   ///< (n, 9) int32; n is 0 for linear wedges
+  pybind11::array wedge_labels() const;                 ///< (n,) int32
 
   /// Writes one file, in the format of its ending: the bytes that the command line writes. @throws Error
   void save(const std::string& path, bool surface_only, std::optional<bool> per_label, std::optional<bool> msh2) const;

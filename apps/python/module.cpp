@@ -162,6 +162,9 @@ PYBIND11_MODULE(_stackmesh, m) {
       .def("tets", &MeshData::tets)
       .def("tet_mids", &MeshData::tet_mids)
       .def("tet_labels", &MeshData::tet_labels)
+      .def("wedges", &MeshData::wedges)
+      .def("wedge_mids", &MeshData::wedge_mids)
+      .def("wedge_labels", &MeshData::wedge_labels)
       .def("save", &MeshData::save, py::call_guard<py::gil_scoped_release>());
   m.def("keywords", [](const std::string& command) {
     py::list out;

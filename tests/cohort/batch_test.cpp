@@ -163,7 +163,7 @@ TEST_F(CohortTest, NeverMoreAtOnceThanFitIntoMemory) {
 
 TEST_F(CohortTest, TwoRunsDoNotWorkInOneFolder) {
   write("slow.nrrd", box_volume(30, 30));
-  write("cases.csv", "id,input,edge-length\nslow,slow.nrrd,1\n");
+  write("cases.csv", "id,input,edge-length\nslow,slow.nrrd,0.5\n");
   program::Around around;
   Ended second;
   around.while_running = [&](int) {

@@ -187,10 +187,10 @@ TEST_F(Cases, MemoryIsBoundedAndAnErrorSaysByHowMuch) {
   fails(2, {"info", path, "--max-memory", "lots"}, {"--max-memory"});
   Around shell;  // a bound that the shell has set is told as it is
   shell.in_child = [] {
-    const rlimit space{rlim_t{320} << 20, rlim_t{320} << 20};
+    const rlimit space{rlim_t{256} << 20, rlim_t{256} << 20};
     return ::setrlimit(RLIMIT_AS, &space) == 0;
   };
-  fails(4, {"info", path}, {"320 MB"}, {}, shell);
+  fails(4, {"info", path}, {"256 MB"}, {}, shell);
 }
 
 TEST_F(Cases, APngInAFolderOfDicomIsLeftOut) {

@@ -25,12 +25,17 @@ class Mesh:
     tet_mids : int32, shape (n, 6)
         With order=2 the nodes on the edges 01, 12, 02, 03, 13, 23 (VTK, Abaqus); else no rows.
     tet_labels : int32, shape (n,)
+    wedges : int32, shape (n, 6)
+        Of layers (`layer=["5=1.5,3"]`): an outer triangle, then the inner one below it, as Abaqus numbers them. Where corners 2 and 5 are one point it is a pyramid.
+    wedge_mids : int32, shape (n, 9)
+        With order=2 the nodes on the edges 01, 12, 20, 34, 45, 53, 03, 14, 25; else no rows.
+    wedge_labels : int32, shape (n,)
     names : dict of int to str
         The labels of the mesh by number, as files name them.
     colours : dict of int to (red, green, blue)
         Where the input has them.
     report : dict
-        The figures of the run (docs/report.md); fidelity and verdicts where `report` was asked for.
+        The figures of the run (docs/report.md); fidelity and verdicts where `report` was requested.
     """
 
     def __init__(self, data, report, surface_only=False):
@@ -58,6 +63,30 @@ class Mesh:
     def tet_labels(self):
         """int32, shape (n,)"""
         return self._data.tet_labels()[: None if self.is_volume else 0]
+
+    @property
+    def wedges(self):
+        """int32, shape (n, 6): rows of points; of layers."""
+        return self._data.wedges()[: None if self.is_volume else 0]
+
+    @property
+    def wedge_mids(self):
+        """int32, shape (n, 9): with order=2 the nodes on the edges; else no rows."""
+        return self._data.wedge_mids()[: None if self.is_volume else 0]
+
+    @property
+    def wedge_labels(self):
+        """int32, shape (n,)"""
+        return self._data.wedge_labels()[: None if self.is_volume else 0]
+
+    def _through_a_file(self, read):
+        """What `read` makes of this mesh as a .vtu file: layers have elements of several kinds, which the file tells apart."""
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mesh.vtu")
+            self.save(path)
+            return read(path)
 
     @property
     def surface(self):
@@ -88,6 +117,10 @@ class Mesh:
         if not self.is_volume:
             below, above = self.triangle_labels.T
             return meshio.Mesh(self.points, [("triangle", self.triangles)], cell_data={"label_below": [below], "label_above": [above]})
+        if len(self.wedges):
+            mesh = self._through_a_file(meshio.read)
+            solid = [n for n, block in enumerate(mesh.cells) if not block.type.startswith("triangle")]  # the file holds the interfaces, too
+            return meshio.Mesh(mesh.points, [mesh.cells[n] for n in solid], cell_data={"label": [mesh.cell_data["label"][n] for n in solid]})
         quadratic = len(self.tet_mids) > 0
         cells = np.hstack([self.tets, self.tet_mids]) if quadratic else self.tets
         return meshio.Mesh(self.points, [("tetra10" if quadratic else "tetra", cells)], cell_data={"label": [self.tet_labels]})
@@ -99,6 +132,26 @@ class Mesh:
         from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
         from vtkmodules.vtkCommonCore import vtkPoints
 
+        if len(self.wedges):
+            from vtkmodules.vtkCommonCore import vtkIdList
+            from vtkmodules.vtkFiltersExtraction import vtkExtractCells
+            from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+            def read(path):
+                reader = vtkXMLUnstructuredGridReader()
+                reader.SetFileName(path)
+                reader.Update()
+                grid, solid = reader.GetOutput(), vtkIdList()
+                for n in range(grid.GetNumberOfCells()):  # the file holds the interfaces, too
+                    if grid.GetCell(n).GetCellDimension() == 3:
+                        solid.InsertNextId(n)
+                extract = vtkExtractCells()
+                extract.SetInputData(grid)
+                extract.SetCellList(solid)
+                extract.Update()
+                return extract.GetOutput()
+
+            return self._through_a_file(read)
         points = vtkPoints()
         points.SetData(numpy_to_vtk(np.ascontiguousarray(self.points), deep=True))
         corners = np.hstack([self.tets, self.tet_mids]) if len(self.tet_mids) else self.tets if self.is_volume else self.triangles
@@ -144,4 +197,5 @@ class Mesh:
 
     def __repr__(self):
         what = f"{len(self.tets)} tetrahedra of {10 if len(self.tet_mids) else 4} nodes, " if self.is_volume else ""
+        what += f"{len(self.wedges)} wedges, " if len(self.wedges) else ""
         return f"<stackmesh.Mesh: {what}{len(self.points)} points, {len(self.triangles)} triangles, labels {sorted(self.names)}, mm, {self.space}>"

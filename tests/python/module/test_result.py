@@ -47,6 +47,29 @@ class Result(unittest.TestCase):
         self.assertEqual(self.mesh.surface.tets.shape, (0, 4))
         self.assertEqual(set(np.unique(self.mesh.surface.triangles)), set(range(len(self.mesh.surface.points))))
 
+    def test_layers_are_wedges(self):
+        """A layer under the outer label: nothing of the mesh is lost, in the arrays or on the way to other libraries."""
+        m = stackmesh.mesh(ball(), spacing=(1, 1, 1.5), layer=["5=1,2"])
+        self.assertGreater(len(m.wedges), 100)
+        self.assertEqual((m.wedges.shape[1], len(m.wedge_labels), len(m.tet_labels)), (6, len(m.wedges), len(m.tets)))
+        self.assertEqual(set(m.wedge_labels), {5})
+        p = m.points
+
+        def volume(a, b, c, d):
+            return np.einsum("nd,nd->n", np.cross(p[b] - p[a], p[c] - p[a]), p[d] - p[a]) / 6
+
+        w = m.wedges.T
+        of_wedges = np.abs(volume(w[0], w[1], w[2], w[3])) + np.abs(volume(w[1], w[2], w[3], w[4])) + np.abs(volume(w[2], w[3], w[4], w[5]))
+        of_tets = volume(*m.tets.T)
+        row = next(r for r in m.report["labels"] if r["label"] == 5)
+        total = of_tets[m.tet_labels == 5].sum() + of_wedges.sum()
+        self.assertAlmostEqual(total / row["tet_volume_mm3"], 1, delta=0.01)
+        cells = {block.type: len(block.data) for block in m.to_meshio().cells}
+        self.assertEqual(cells["tetra"], len(m.tets))
+        self.assertEqual(cells.get("wedge", 0) + cells.get("pyramid", 0), len(m.wedges))
+        self.assertEqual(m.to_vtk().GetNumberOfCells(), len(m.tets) + len(m.wedges))
+        self.assertIn("wedges", repr(m))
+
     def test_report_is_a_dict(self):
         self.assertEqual(self.mesh.report["surface"]["triangles"], len(self.mesh.surface.triangles))
         self.assertEqual(self.mesh.report["volume"]["tets"], len(self.mesh.tets))
