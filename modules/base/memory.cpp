@@ -66,6 +66,9 @@ std::uint64_t memory_limit() {
 
 void set_memory_limit(std::uint64_t bytes) {
   asked = bytes;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return;  // the terabytes of a sanitizer's shadow would count
+#endif
   rlimit limit{};
   if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
   limit.rlim_cur = static_cast<rlim_t>(std::min<std::uint64_t>(memory_limit(), limit.rlim_max));

@@ -12,6 +12,7 @@
 #include "fem/ordered_mesh.h"
 #include "fem/selection.h"
 #include "fem/split_parts.h"
+#include "fem/uncut_mesh.h"
 
 namespace stackmesh {
 namespace {
@@ -26,6 +27,11 @@ class Namer {
  public:
   Namer(const TetMesh& mesh, const std::vector<LabelInfo>& labels, const SetOptions& options) : o_(options) {
     model_.mesh = ordered_mesh(mesh);
+    for (int i = 0; i < o_.times_cut; ++i) {
+      TetMesh before = uncut_mesh(model_.mesh);
+      finer_.push_back(std::move(model_.mesh));
+      model_.mesh = std::move(before);
+    }
     std::set<Label> present(model_.mesh.labels.begin(), model_.mesh.labels.end());
     std::vector<LabelInfo> infos;
     for (const Label l : present) {
@@ -54,6 +60,7 @@ class Namer {
     parts();
     selections();
     skins();
+    for (; !finer_.empty(); finer_.pop_back()) cut(std::move(finer_.back()));
     finish();
     return std::move(model_);
   }
@@ -266,18 +273,47 @@ class Namer {
     }
   }
 
+  std::vector<TetFace> outer_faces(Label label) const {
+    std::vector<TetFace> faces;
+    for (const BoundaryFace& f : faces_)
+      if (f.in == label && f.out == 0) faces.push_back(f.at);
+    return faces;
+  }
+
   void skins() {
     for (const auto& [label, thickness] : o_.skins) {
       ShellSet shells;
       shells.label = label;
       shells.thickness_mm = thickness;
-      for (const BoundaryFace& f : faces_)
-        if (f.in == label && f.out == 0) shells.faces.push_back(f.at);
+      shells.faces = outer_faces(label);
       if (shells.faces.empty())
         fail_input("label " + std::to_string(label) + " has no faces to the background", "--skin", "name a label with outer faces");
       shells.name = unique(name_of(label) + "_skin");
       model_.sets.shells.push_back(std::move(shells));
     }
+  }
+
+  /// Goes on to the mesh that this one was cut into: the faces of each set are cut likewise.
+  void cut(TetMesh finer) {
+    std::vector<BoundaryFace> cut_faces = boundary_faces(finer);
+    const std::vector<std::int32_t> from = uncut_faces(finer, cut_faces, faces_);
+    std::vector<std::vector<std::int32_t>> into(faces_.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      into[from[i]].push_back(static_cast<std::int32_t>(i));
+      cut_faces[i].behind = faces_[from[i]].behind;
+    }
+    const auto cut_list = [&](std::vector<std::int32_t>& list) {
+      std::vector<std::int32_t> parts;
+      for (const std::int32_t f : list) parts.insert(parts.end(), into[f].begin(), into[f].end());
+      std::sort(parts.begin(), parts.end());
+      list = std::move(parts);
+    };
+    for (FaceList& l : lists_) cut_list(l.faces);
+    for (auto& [parts, contact] : contacts_) cut_list(contact.second);
+    faces_ = std::move(cut_faces);
+    for (ShellSet& shells : model_.sets.shells) shells.faces = outer_faces(shells.label);
+    model_.mesh = std::move(finer);
+    model_.mesh.faces.clear();
   }
 
   /// Nodes are copied for the parts, then sets are written down with the nodes they have by then.
@@ -357,6 +393,7 @@ class Namer {
 
   const SetOptions& o_;
   SolverModel model_;
+  std::vector<TetMesh> finer_;  // what model_.mesh was cut into, the finest first
   std::vector<LabelInfo> voids_;
   std::vector<BoundaryFace> faces_;
   std::vector<FaceList> lists_;

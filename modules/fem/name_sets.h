@@ -26,6 +26,7 @@ struct SetOptions {
   std::vector<std::string> selections;                            ///< --select, see select_faces()
   std::vector<std::pair<Label, double>> skins;                    ///< --skin: shells of that thickness (mm) on the outer faces
   bool ras = false;  ///< the mesh's frame is RAS: landmarks are turned into it
+  int times_cut = 0; ///< how often refine_tets() has cut the mesh: its sets are those of the mesh before, cut likewise
 };
 
 /// Makes a solver model of a mesh: names its sets and parts its labels.
@@ -38,7 +39,7 @@ struct SetOptions {
 /// and a node set of one name. With parts, nodes that several of them share are given to each of them, the faces between them
 /// are `contact_A_B`, `contact_B_A`, their outlines `rim_A_B`, `rim_B_A`, nodes of three parts `triple_A_B_C`.
 ///
-/// @param mesh linear or second order, every tet positive; any order of tets
+/// @param mesh linear or second order, every tet positive; any order of tets, but those cut from one stand together as refine_tets() leaves them
 /// @throws Error(usage) for a selection that cannot be read or a part given twice, Error(input) for a label that is not there, a selection without faces, a mesh whose tets overlap
 SolverModel name_sets(const TetMesh& mesh, const std::vector<LabelInfo>& labels, const SetOptions& options);
 

@@ -369,6 +369,7 @@ class FemRun {
       }
       if (out.reached || measures.size() == kMostMeshes || (!o_.mesh.mesh.many_tets && measures.size() > 1 && 8 * model.mesh.tets.size() > most_elements())) return out;
       product.mesh = refine_tets(std::move(product.mesh), 1);
+      ++times_cut_;
       built = build(product);
     }
   }
@@ -382,6 +383,7 @@ class FemRun {
     sets.sharp_deg = o_.sharp_deg;
     sets.selections = o_.selections;
     sets.ras = ras;
+    sets.times_cut = o_.mesh.mesh.refine + times_cut_;
     const LabelTable known(product.labels);
     for (const auto& [name, text] : o_.parts) sets.parts.push_back({name, known.numbers(text)});
     for (const auto& [text, thickness] : o_.skins)
@@ -471,6 +473,7 @@ class FemRun {
   Monitor& progress_;
   std::optional<MaterialPlan> plan_;
   std::optional<IntensityVolume> image_;
+  int times_cut_ = 0;  // by --accuracy, beyond --refine
   std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
   std::vector<LabelInfo> voids_;                        // that the mesh names
 };

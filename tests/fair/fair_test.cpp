@@ -109,7 +109,8 @@ std::array<double, 2> poles_off(double r, double slices_from, double inside) {
         volume.voxels[n] = d < inside ? 2 : d < r ? 1 : 0;
       }
   double low = 1e9, high = -1e9;
-  for (const Vec3& p : stitch_faired(volume).complex().points) {
+  const auto surface = stitch_faired(volume).complex();
+  for (const Vec3& p : surface.points) {
     low = std::min(low, p.z);
     high = std::max(high, p.z);
   }

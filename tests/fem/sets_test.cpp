@@ -12,6 +12,7 @@
 #include "fem/name_sets.h"
 #include "fem/split_parts.h"
 #include "volume/raise_order.h"
+#include "volume/refine_tets.h"
 
 using namespace stackmesh;
 using blocks::block;
@@ -162,6 +163,48 @@ TEST(NameSets, SecondOrderSetsHoldMidSideNodes) {
   const SolverModel m = name_sets(mesh, kNames, {});
   // A 2 x 4 grid of squares with one diagonal each: 15 corners, 3 * 4 + 2 * 5 + 8 edges.
   EXPECT_EQ(count_nodes(m, "left_lung_to_Left_Lung_2"), 15u + 12 + 10 + 8);
+}
+
+double area_of(const SolverModel& m, const FaceSet& set) {
+  double area = 0;
+  for (const TetFace f : set.faces) {
+    const auto v = outward_nodes(m.mesh, f);
+    area += 0.5 * norm(cross(m.mesh.points[v[1]] - m.mesh.points[v[0]], m.mesh.points[v[2]] - m.mesh.points[v[0]]));
+  }
+  return area;
+}
+
+/// However often a mesh is cut, a set is the same piece of its surface: also one selected by the faces' centres, of which some are in and some of the faces cut from them are not.
+TEST(NameSets, OfACutMeshAreThoseOfTheMeshBefore) {
+  SetOptions options;
+  options.selections = {"ball=sphere:1,1,2,1.6", "front=plane:0,0,4,0,0,1"};
+  options.parts = {{"A", {4}}, {"B", {9}}};
+  options.skins = {{4, 0.5}};
+  for (const bool curved : {false, true}) {
+    const TetMesh mesh = curved ? raise_order(two_labels(), {}).mesh : two_labels();
+    const SolverModel whole = name_sets(mesh, kNames, options);
+    for (int times = 1; times < 3; ++times) {
+      options.times_cut = times;
+      const SolverModel cut = name_sets(refine_tets(mesh, times), kNames, options);
+      ASSERT_EQ(cut.mesh.tets.size(), whole.mesh.tets.size() << (3 * times));
+      ASSERT_EQ(cut.sets.surfaces.size(), whole.sets.surfaces.size());
+      ASSERT_EQ(cut.sets.node_sets.size(), whole.sets.node_sets.size());
+      for (std::size_t i = 0; i < whole.sets.surfaces.size(); ++i) {
+        const FaceSet &before = whole.sets.surfaces[i], &after = cut.sets.surfaces[i];
+        EXPECT_EQ(after.name, before.name);
+        EXPECT_EQ(after.faces.size(), before.faces.size() << (2 * times)) << before.name;
+        EXPECT_NEAR(area_of(cut, after), area_of(whole, before), 1e-9) << before.name;
+      }
+      EXPECT_EQ(cut.sets.shells[0].faces.size(), whole.sets.shells[0].faces.size() << (2 * times));
+      EXPECT_EQ(cut.mesh.faces.size(), whole.mesh.faces.size() << (2 * times));
+    }
+    options.times_cut = 0;
+    // Selected anew, the ball has other faces: it is the inheritance that keeps the set.
+    const SolverModel anew = name_sets(refine_tets(mesh, 1), kNames, options);
+    EXPECT_NE(faces_of(anew, "ball"), 4 * faces_of(whole, "ball"));
+  }
+  options.times_cut = 1;
+  EXPECT_THROW(name_sets(two_labels(), kNames, options), Error);  // was not cut
 }
 
 TEST(Parts, NodesAreSharedWithinAPartAndDoubledBetweenParts) {

@@ -198,7 +198,7 @@ TEST_F(StoredNumbers, PngFiltersAreUndone) {
 Bytes tiff_page(int width, int height, int bits, int photometric, int format, const Bytes& data) {
   const bool palette = photometric == 3;
   const int entries = palette ? 11 : 10;
-  const auto at = static_cast<std::uint32_t>(8 + 2 + 12 * entries + 4), colours = static_cast<std::uint32_t>(3 << bits);
+  const auto at = static_cast<std::uint32_t>(8 + 2 + 12 * entries + 4), colours = palette ? 3u << bits : 0;
   Bytes out = Bytes("II*\0", 4) + little<std::uint32_t>(8) + little<std::uint16_t>(entries);
   const auto entry = [&](int tag, int type, std::uint32_t count, std::uint32_t value) { out += little<std::uint16_t>(tag) + little<std::uint16_t>(type) + little(count) + little(value); };
   const std::uint32_t pixels = at + (palette ? 2 * colours : 0);
