@@ -285,19 +285,34 @@ def measure(args, shape, h, mesher):
 # ---- the femur -------------------------------------------------------------------------------------------------
 
 FEMUR = [("edges of 8 mm", 8, 0), ("edges of 6 mm", 6, 0), ("edges of 5 mm", 5, 0), ("edges of 4 mm", 4, 0), ("edges of 3 mm", 3, 0), ("edges of 2 mm", 2, 0),
-         ("edges of 8 mm, refined once", 8, 1), ("edges of 8 mm, refined twice", 8, 2)]
+         ("edges of 8 mm, refined once", 8, 1), ("edges of 8 mm, refined twice", 8, 2), ("edges of 4 mm, refined once", 4, 1)]
+
+
+HIP = np.array([-82.0, -144.0, 128.0])  # centre of the femur's head
+
+
+def displacement_at(result, place):
+    """By the shape functions of the tetrahedron that the place is in (its sides are nearly straight there, within the body)."""
+    tets = np.asarray(result.tets)
+    a, b, c, d = (result.points[tets[:, k]] for k in range(4))
+    l = np.linalg.solve(np.stack([b - a, c - a, d - a], 2), (place - a)[:, :, None])[:, :, 0]
+    l = np.column_stack([1 - l.sum(1), l])
+    t = l.min(1).argmax()
+    weights = [x * (2 * x - 1) for x in l[t]] + [4 * l[t][i] * l[t][j] for i, j in EDGES]
+    return np.array(weights) @ result.fields["DISP"][tets[t], :3]
 
 
 def femur(args, edge, refine):
     data = args.tools.parent / "data" / "torso_totalseg"
     stamp = hashlib.sha256(args.program.read_bytes()).hexdigest()[:10]
-    kept = args.cache / f"femur_{edge}_{refine}_{stamp}.json"
+    kept = args.cache / f"femur_hip_{edge}_{refine}_{stamp}.json"
     if kept.is_file():
         return json.loads(kept.read_text())
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         law = json.loads((ROOT / "testdata" / "femur_ct_law.json").read_text())
-        law["load_case"] = {"fixed": [{"set": "femur_right_cap_low"}], "loaded": [{"set": "head", "force_N": [0, 0, -1000]}]}
+        law["load_case"] = {"fixed": [{"set": "femur_right_cap_low"}],
+                            "points": [{"name": "hip", "set": "head", "mm": HIP.tolist(), "coupling": "distributing"}], "loaded": [{"point": "hip", "force_N": [0, 0, -1000]}]}
         (folder / "law.json").write_text(json.dumps(law))
         (folder / "names.ctbl").write_text("76 femur_right 241 214 145 255\n")
         run = subprocess.run([args.program, "fem", data / "torso_3mm_61labels.nii.gz", "--label", "76", "--names", "names.ctbl", "--edge-length", str(edge),
@@ -317,14 +332,14 @@ def femur(args, edge, refine):
         p = result.points
         inside_head = ((p > p[head].min(0) - 5) & (p < p[head].max(0) + 5)).all(1)
         away = (p[:, 2] > p[:, 2].min() + 15) & ~inside_head
-        figures = {"tets": len(result.tets), "moves_mm": float(np.linalg.norm(result.fields["DISP"][head, :3], axis=1).max()), "peak_mpa": float(m[away].max()),
+        figures = {"tets": len(result.tets), "moves_mm": float(np.linalg.norm(displacement_at(result, HIP))), "peak_mpa": float(m[away].max()),
                    "p99_mpa": float(np.percentile(m[away], 99)), "rms_mpa": float(np.sqrt((m[away] ** 2).mean())), "solve_s": round(time.monotonic() - start, 1)}
     kept.write_text(json.dumps(figures))
     return figures
 
 
 def femur_table(args):
-    out = ["| mesh | tetrahedra | head moves, mm | peak stress away from cut and load, MPa | 99th percentile | root mean square |", "|---|---|---|---|---|---|"]
+    out = ["| mesh | tetrahedra | centre of the head moves, mm | peak stress away from cut and load, MPa | 99th percentile | root mean square |", "|---|---|---|---|---|---|"]
     for title, edge, refine in FEMUR:
         f = femur(args, edge, refine)
         print(f"{title}: {json.dumps(f)}", file=sys.stderr, flush=True)
