@@ -81,6 +81,7 @@ class Enhancement {
       remesh_mesh(mesh);
       if (stands(SurfaceLevel::enhanced, mesh)) {
         result_.complex = mesh.to_complex();
+        result_.complex.space = stitched_.space;
         compare_volumes(mesh);
         progress_.advance(1);
         return std::move(result_);

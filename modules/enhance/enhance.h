@@ -50,7 +50,7 @@ struct EnhanceCounts {
 };
 
 struct EnhanceResult {
-  InterfaceComplex complex;  ///< stack coordinates, mm
+  InterfaceComplex complex;  ///< in the space of what was given
   SurfaceLevel level = SurfaceLevel::stitched;  ///< how far it came
   EnhanceCounts counts;
   std::size_t expected_triangles = 0, expected_tets = 0;  ///< from the sizes, before remeshing

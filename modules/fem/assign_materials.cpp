@@ -10,6 +10,7 @@
 #include "fem/lay_fibres.h"
 #include "fem/map_modulus.h"
 #include "fem/tet_shape.h"
+#include "model/space.h"
 #include "model/wedge_shape.h"
 
 namespace stackmesh {
@@ -35,8 +36,8 @@ auto find(const Map& map, Label label, const std::string& name) {
 
 class Assigner {
  public:
-  Assigner(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options)
-      : model_(model), plan_(plan), image_(image), o_(options) {}
+  Assigner(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image)
+      : model_(model), plan_(plan), image_(image) {}
 
   MaterialReport run() {
     SolverSets& sets = model_.sets;
@@ -114,7 +115,7 @@ class Assigner {
     SolverSets& sets = model_.sets;
     const ModulusLaw& law = plan_->laws.at(m.law);
     row.law = law.name;
-    const InsideVoxels voxels(*image_, model_.mesh, tets, plan_->mapping.erode_px, o_.ras);
+    const InsideVoxels voxels(*image_, model_.mesh, tets, plan_->mapping.erode_px);
     row.voxels = voxels.used();
     if (voxels.used() == 0)
       report_.warnings.push_back("label " + std::to_string(label) + " holds no voxel's centre of the image: intensities are taken as they are around it");
@@ -165,8 +166,7 @@ class Assigner {
     std::size_t outside = 0;
     Vec3 p;
     for (const std::int32_t t : tets) {
-      Vec3 c = middle(t);
-      if (o_.ras) c = {-c.x, -c.y, c.z};
+      const Vec3 c = in_space(middle(t), model_.mesh.space, Space::lps);
       if (image_->contains(c)) continue;
       if (outside++ == 0) p = c;
     }
@@ -241,7 +241,6 @@ class Assigner {
   SolverModel& model_;
   const MaterialPlan* plan_;
   const IntensityVolume* image_;
-  const MaterialOptions& o_;
   MaterialReport report_;
   bool used_image_ = false;
 };
@@ -271,8 +270,8 @@ void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, 
   }
 }
 
-MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options) {
-  return Assigner(model, plan, image, options).run();
+MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image) {
+  return Assigner(model, plan, image).run();
 }
 
 }  // namespace stackmesh

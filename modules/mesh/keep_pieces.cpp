@@ -122,6 +122,7 @@ void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::ve
   }
   for (std::size_t s = 0; s < shells; ++s) gone[s] = gone[piece_of[s]];
   InterfaceComplex kept;
+  kept.space = complex.space;
   std::vector<std::int32_t> number(complex.points.size(), -1);
   for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
     InterfaceTriangle out = complex.triangles[t];

@@ -7,6 +7,7 @@
 #include "base/cancel.h"
 #include "fair/true_grid.h"
 #include "mesh/stages.h"
+#include "model/space.h"
 #include "sections/far_sections.h"
 #include "sections/virtual_sections.h"
 
@@ -111,8 +112,7 @@ void finish(SectionStage sections, LabelMesh& out, const Call& call) {
   out.layers = std::move(tets.layers);
   call.clock.run("validate", [&] {
     if (!out.tets) return;
-    to_world(out.tets->points, out.tets->faces, out.frame);
-    if (out.frame.mirrors()) turn_all_round(*out.tets);
+    change_space(*out.tets, out.frame.world, out.frame);
     out.tets_check = check_volume(*out.tets, {o.threads});
     warn_of_flat_tets(out, call.warnings);
   });

@@ -61,7 +61,8 @@ struct Refusal {
   std::vector<std::int32_t> triangles;  ///< of `surface`, where it fails; ascending
 };
 
-/// Labels as a checked surface and, for Target::volume, as tetrahedra. Coordinates are LPS, mm; of labels without anatomical axes, in the axes they came in.
+/// Labels as a checked surface and, for Target::volume, as tetrahedra. Surface and tetrahedra lie in Space::lps; of labels without anatomical axes in
+/// Space::none, the axes they came in.
 struct LabelMesh {
   std::vector<LabelInfo> labels;         ///< of the input, ascending, without the background
   InterfaceComplex surface;              ///< all interfaces between labels, closed and free of intersections

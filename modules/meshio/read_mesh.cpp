@@ -66,7 +66,7 @@ class MeshFinisher {
     out_.format = raw_.format;
     check();
     out_.points = std::move(raw_.points);
-    if (!raw_.space.empty()) out_.space = raw_.space == "LPS" ? WorldSpace::lps : WorldSpace::ras;
+    if (!raw_.space.empty()) out_.space = raw_.space == "LPS" ? Space::lps : Space::ras;
     find_labels();
     if (!is_volume()) take_surface();
     else take_volume();
@@ -438,6 +438,7 @@ MeshFile read_mesh(const std::string& path, const MeshReadOptions& options) {
 
 TetMesh tet_mesh_of(const MeshFile& file) {
   TetMesh mesh;
+  mesh.space = file.space.value_or(Space::none);
   mesh.points = file.points;
   mesh.tets = file.tets;
   mesh.labels = file.tet_labels;

@@ -34,6 +34,7 @@ struct LabelVolume {
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
   }
+  Space space() const { return anatomical ? Space::lps : Space::none; }  ///< of world()
   double voxel_volume_mm3() const { return spacing_mm[0] * spacing_mm[1] * spacing_mm[2]; }
   /// World position (LPS, mm) of a continuous voxel index.
   Vec3 world(double i, double j, double k) const {

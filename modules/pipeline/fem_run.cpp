@@ -17,6 +17,7 @@
 #include "fem/solver_names.h"
 #include "image/read_label_table.h"
 #include "model/label_table.h"
+#include "model/space.h"
 #include "fem/load_case.h"
 #include "fem/recover_stress.h"
 #include "fem/selection.h"
@@ -111,8 +112,7 @@ class FemRun {
     check_labels(product.labels);
     clock.run("validate", [&] { check(product, report); });
     const std::vector<Label> behind = voids_behind(product.mesh.faces);
-    if (product.space == WorldSpace::ras)  // it was read and judged in LPS
-      to_ras(product.mesh.points);
+    change_space(product.mesh, written_);  // it was read and judged in LPS
     if (o_.mesh.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.mesh.threads;
@@ -142,12 +142,11 @@ class FemRun {
   }
 
   HtmlPictures draw(const MeshProduct& product, const RunReport& report) const {
-    const InterfaceComplex surface = {product.mesh.points, product.mesh.faces};
+    const InterfaceComplex surface = {product.mesh.points, product.mesh.faces, product.mesh.space};
     HtmlScene scene;
     scene.surface = &surface;
     scene.mesh = &product.mesh;
     scene.values = &report.fem->faces;
-    scene.space = product.space == WorldSpace::none ? "none" : o_.mesh.space;
     HtmlOptions options;
     options.threads = o_.mesh.mesh.threads;
     return draw_pictures(scene, options);
@@ -168,19 +167,17 @@ class FemRun {
     if (file.tets.empty()) fail_input("the mesh has no tetrahedra", path, "give a volume mesh, or labels");
     report.input.path = path;
     report.input.kind = "mesh";
-    report.input.space = o_.mesh.space;
     for (const std::string& note : file.notes) report.warnings.push_back(note);
     if (file.label_source == LabelSource::none)
       report.warnings.push_back(path + ": no cell array holds labels: every element has label 1 (name an array with --label-array)");
     if (!file.space) report.warnings.push_back(path + ": does not say its frame; it is taken as LPS");
     MeshProduct product;
-    product.space = o_.mesh.space == "ras" ? WorldSpace::ras : WorldSpace::lps;
+    product.mesh.space = file.space.value_or(Space::lps);
+    written_ = product.mesh.space == Space::none ? Space::none : o_.mesh.space == "ras" ? Space::ras : Space::lps;
+    report.input.space = to_text(written_);
     product.up = o_.up;
-    if (file.space && *file.space == WorldSpace::none) product.space = WorldSpace::none;
-    if (file.space && *file.space == WorldSpace::ras)
-      to_ras(file.points);  // and back again
-    if (product.space == WorldSpace::none) report.input.space = "none";
     product.mesh.points = std::move(file.points);
+    if (product.mesh.space == Space::ras) change_space(product.mesh, Space::lps);  // and back again
     product.mesh.tets = std::move(file.tets);
     product.mesh.mid = std::move(file.midside);
     product.mesh.wedges = std::move(file.wedges);
@@ -276,7 +273,7 @@ class FemRun {
       report.volume = check_volume(mesh, {o_.mesh.mesh.threads});
       return;
     }
-    const InterfaceComplex surface = {mesh.points, mesh.faces};
+    const InterfaceComplex surface = {mesh.points, mesh.faces, mesh.space};
     check_mesh(report, surface, &mesh, o_.mesh.mesh.threads);
     Judged judged;
     judged.surface = &surface;
@@ -306,7 +303,6 @@ class FemRun {
     if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back(not_reached(*report.fem->accuracy));
 
     MeshWriteOptions write = o_.mesh.write;
-    write.space = product.space;
     for (const std::string& path : o_.mesh.outputs) {
       if (!is_volume_format(path)) continue;
       for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
@@ -357,7 +353,6 @@ class FemRun {
       const LoadStep step = *std::find_if(first.sets.steps.begin(), first.sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
       first.sets.steps = {step};
       MeshWriteOptions write = o_.mesh.write;
-      write.space = product.space;
       const auto begin = std::chrono::steady_clock::now();
       const std::vector<Vec3> moved = solve_with_calculix(first, write, o_.mesh.mesh.threads, o_.mesh.mesh.fill.timeout_s);
       out.solve_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -375,13 +370,11 @@ class FemRun {
 
   Built build(const MeshProduct& product) const {
     Built out;
-    const bool ras = product.space == WorldSpace::ras;
     SetOptions sets;
     sets.up = product.up;
     sets.image = product.image;
     sets.sharp_deg = o_.sharp_deg;
     sets.selections = o_.selections;
-    sets.ras = ras;
     const LabelTable known(product.labels);
     for (const auto& [name, text] : o_.parts) sets.parts.push_back({name, known.numbers(text)});
     for (const auto& [text, thickness] : o_.skins)
@@ -391,12 +384,10 @@ class FemRun {
 
     if (image_) {
       for (const std::string& w : image_->warnings) out.warnings.push_back(w);
-      if (product.space == WorldSpace::none)
+      if (product.mesh.space == Space::none)
         fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
     }
-    MaterialOptions how;
-    how.ras = ras;
-    out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr, how);
+    out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr);
     for (const std::string& w : out.materials.warnings) out.warnings.push_back(w);
     if (!plan_) out.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
@@ -473,6 +464,7 @@ class FemRun {
   std::optional<IntensityVolume> image_;
   std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
   std::vector<LabelInfo> voids_;                        // that the mesh names
+  Space written_ = Space::lps;
 };
 
 }  // namespace

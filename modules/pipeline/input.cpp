@@ -170,6 +170,7 @@ Input read_input(const InputOptions& asked) {
   else read_volume(options, input);
   if (!input.volume) {
     input.labels = labels_of(input.contours);
+    input.drawn.frame.world = input.anatomical ? Space::lps : Space::none;
     choose_caps(options, input);
   }
   if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);

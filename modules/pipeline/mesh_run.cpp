@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "mesh/voids.h"
 #include "model/label_table.h"
+#include "model/space.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
@@ -41,7 +42,7 @@ class MeshRun {
     if (valid && model_ && mesh_.tets) clock_.run("write", [&] { make_model(); });
     clock_.run("write", [&] {
       if (valid) write();
-      if (asks_for_html(o_.reports)) draw(valid);
+      if (asks_for_html(o_.reports)) draw();
     });
     report_.peak_rss_mb = peak_memory_mb();
     write_reports();
@@ -69,8 +70,8 @@ class MeshRun {
     const bool anatomical = input_.anatomical;
     if (o_.space == "ras" && !anatomical)
       fail_usage("--space ras needs an input with anatomical axes", input_.path, "leave --space out: coordinates are kept as they are");
-    world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;
-    report_.input.space = anatomical ? o_.space : "none";
+    written_ = !anatomical ? Space::none : o_.space == "ras" ? Space::ras : Space::lps;
+    report_.input.space = to_text(written_);
     add_label_rows(report_, input_.labels);
     for (LabelReport& row : report_.labels) row.is_void = input_.voids.count(row.label) > 0;
     if (!input_.volume) return;
@@ -195,6 +196,7 @@ class MeshRun {
     if (refusal.triangles.empty() || (o_.outputs.empty() && o_.reports.empty())) return;
     InterfaceComplex part;
     part.points = mesh_.surface.points;
+    part.space = mesh_.surface.space;
     for (std::int32_t t : refusal.triangles) part.triangles.push_back(mesh_.surface.triangles[t]);
     const std::string base = o_.outputs.empty() ? o_.reports[0] : o_.outputs[0];
     const std::string path = base.substr(0, base.rfind('.')) + ".offending.vtp";
@@ -204,7 +206,6 @@ class MeshRun {
 
   MeshWriteOptions write_options() const {
     MeshWriteOptions w = o_.write;
-    w.space = world_;
     w.labels = input_.labels;
     return w;
   }
@@ -219,10 +220,8 @@ class MeshRun {
   }
 
   void write() {
-    if (world_ == WorldSpace::ras) {
-      to_ras(mesh_.surface.points);
-      if (mesh_.tets) to_ras(mesh_.tets->points);
-    }
+    change_space(mesh_.surface, written_);
+    if (mesh_.tets) change_space(*mesh_.tets, written_);
     if (mesh_.tets) name_voids(mesh_.tets->faces, mesh_.behind);
     if (!input_.voids.empty()) mesh_.surface = written_surface();
     for (const std::string& path : o_.outputs) {
@@ -250,7 +249,7 @@ class MeshRun {
       mesh_.tets.reset();
     }
     name_voids(mesh.faces, mesh_.behind);
-    model_(mesh_product(std::move(mesh), input_.labels, world_, mesh_.frame.axes[2], labels()), report_, files_);
+    model_(mesh_product(std::move(mesh), input_.labels, written_, mesh_.frame.axes[2], labels()), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -265,7 +264,7 @@ class MeshRun {
            " pairs of triangles touch or cross; the other formats keep the checked surface");
   }
 
-  void draw(bool written) {
+  void draw() {
     HtmlScene scene;
     scene.surface = &mesh_.surface;
     if (mesh_.tets) scene.mesh = &*mesh_.tets;
@@ -274,11 +273,10 @@ class MeshRun {
     scene.stack_axis = mesh_.contours.axis;
     InterfaceComplex of_model;  // corners of second-order tetrahedra lie beside the surface's
     if (report_.fem && mesh_.tets) {
-      of_model = {mesh_.tets->points, mesh_.tets->faces};
+      of_model = {mesh_.tets->points, mesh_.tets->faces, mesh_.tets->space};
       scene.surface = &of_model;
       scene.values = &report_.fem->faces;
     }
-    scene.space = world_ == WorldSpace::none ? "none" : world_ == WorldSpace::ras && written ? "ras" : "lps";
     HtmlOptions options;
     options.threads = o_.mesh.threads;
     pictures_ = draw_pictures(scene, options);
@@ -300,7 +298,7 @@ class MeshRun {
   Input input_;
   LabelMesh mesh_;
   HtmlPictures pictures_;
-  WorldSpace world_ = WorldSpace::lps;
+  Space written_ = Space::lps;
   std::vector<LabelFidelity> fidelity_;
   std::string lost_detail_;
 };

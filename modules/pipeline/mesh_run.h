@@ -42,7 +42,7 @@ using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
 
 /// The mesh that a run has made, as it is written.
 struct MadeMesh {
-  InterfaceComplex surface;      ///< what write_surface() takes
+  InterfaceComplex surface;      ///< what write_surface() takes, in the space that was written
   std::optional<TetMesh> tets;   ///< what write_volume() takes
   MeshWriteOptions write;
   bool has_voids = false;        ///< then `surface` is what write.per_label asked for, and not the other form

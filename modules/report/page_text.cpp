@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "model/space.h"
 #include "report/comparison.h"
 
 namespace stackmesh {
@@ -335,8 +336,7 @@ std::string model_html(const std::vector<HtmlSubject>& subjects) {
 }
 
 Vec3 place_of(const Defect& defect, const HtmlSubject& subject) {
-  const bool turned = subject.pictures != nullptr && subject.pictures->space == "ras";
-  return turned ? Vec3{-defect.where.x, -defect.where.y, defect.where.z} : defect.where;
+  return subject.pictures == nullptr ? defect.where : in_space(defect.where, Space::lps, subject.pictures->space);
 }
 
 std::string defects_html(const std::vector<HtmlSubject>& subjects) {

@@ -393,6 +393,7 @@ class Filler {
 
   /// Improves the tets and compares each label's volume with that of its surface.
   FillResult assemble(TetMesh mesh, const std::string& name) const {
+    mesh.space = complex_.space;
     FillResult result;
     std::string improved;
     if (options_.improve_deg) {
