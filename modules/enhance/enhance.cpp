@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/warning.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
 #include "enhance/separate.h"
@@ -124,7 +125,7 @@ class Enhancement {
 
   static std::string text(const ShellCount& c) { return std::to_string(c.outer) + " pieces and " + std::to_string(c.inward) + " holes"; }
 
-  void warn(const std::string& text) { result_.warnings.push_back(text); }
+  void warn(Warning w) { result_.warnings.push_back(std::move(w)); }
 
   /// True when the whole surface is as sound as the stitched one, which an exact test of all its triangles says.
   bool stands(SurfaceLevel level, const ComplexMesh& mesh) {
@@ -140,7 +141,7 @@ class Enhancement {
       for (const auto& [label, was] : shells_)
         if (const ShellCount is = shells[label]; !(is == was))
           why = "label " + std::to_string(label) + " went from " + text(was) + " to " + text(is);
-    warn("the " + std::string(to_text(level)) + " surface was given up: " + why);
+    warn({WarningCode::not_enhanced, "", "the " + std::string(to_text(level)) + " surface was given up: " + why});
     return false;
   }
 
@@ -242,8 +243,8 @@ class Enhancement {
     s.gradation = o_.gradation;
     s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(usual_deviation_mm());
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
-      warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
-           number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
+      warn({WarningCode::edge_length, "", "a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
+           number(o_.pixel_mm) + " mm): it follows the steps of the voxels"});
     // As edges grow with the root of their deviation, so does the smallest one.
     s.edge_min_mm = o_.edge_min_mm.value_or(std::max(1.0, 1.5 * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0)) * o_.pixel_mm);
     std::map<Label, std::array<Vec3, 2>> boxes;
@@ -267,8 +268,8 @@ class Enhancement {
       const double asked = own != o_.label_edge_mm.end() ? own->second : o_.edge_length_mm.value_or(0);
       if (asked > longest / 3) {
         s.label_edge_mm[label] = kAim * longest / 3;
-        warn("label " + std::to_string(label) + ": an edge length of " + number(asked) +
-             " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used");
+        warn(warning_at(WarningCode::edge_length, "label " + std::to_string(label), "an edge length of " + number(asked) +
+             " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used"));
       } else if (own != o_.label_edge_mm.end()) {
         s.label_edge_mm[label] = kAim * asked;
       }
@@ -334,8 +335,8 @@ class Enhancement {
     if (longer > 1.02) {
       result_.coarsened = longer;
       for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], kOfShell * shell_[v]));
-      warn("edges were made " + number(longer) + " times longer than the default, for a target of " +
-           std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones");
+      warn({WarningCode::edge_length, "", "edges were made " + number(longer) + " times longer than the default, for a target of " +
+           std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones"});
     }
     return triangles;
   }
@@ -361,8 +362,8 @@ class Enhancement {
     std::string why;
     for (const auto& [part, what] : {std::pair{walls, "where walls are thin"}, {pieces, "on small pieces"}, {bends, "where it bends"}})
       if (part > 0.005 * all) why += (why.empty() ? "" : ", ") + number(std::round(100 * part / all)) + " % " + what;
-    warn("edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " + number(std::round(100 * share)) + " % of the surface (" + why +
-         "), as longer ones would cut off too much there");
+    warn({WarningCode::edge_length, "", "edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " + number(std::round(100 * share)) + " % of the surface (" + why +
+         "), as longer ones would cut off too much there"});
   }
 
   void refuse_giants(double triangles) const {
@@ -481,8 +482,8 @@ class Enhancement {
     for (const auto& [label, v] : label_volumes(mesh)) {
       const double change = v / volumes_[label] - 1;
       if (std::abs(change) > 0.05)
-        warn("label " + std::to_string(label) + ": its volume changed by " + number(100 * change) + " % of " +
-             number(volumes_[label]) + " mm3 in the enhancement (it is small or thin for the edge length)");
+        warn(warning_at(WarningCode::volume_changed, "label " + std::to_string(label), "its volume changed by " + number(100 * change) + " % of " +
+             number(volumes_[label]) + " mm3 in the enhancement (it is small or thin for the edge length)"));
     }
   }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "fem/lay_fibres.h"
 #include "fem/map_modulus.h"
 #include "fem/tet_shape.h"
@@ -49,7 +50,7 @@ class Assigner {
     for (std::size_t e = 0; e < model_.mesh.elements(); ++e) elements[model_.mesh.labels[e]].push_back(static_cast<std::int32_t>(e));
     for (const auto& [label, list] : elements) label_material(label, list);
     for (ShellSet& s : sets.shells) skin(s);
-    if (image_ != nullptr && !used_image_) report_.warnings.push_back("the image is not used: no label of the mesh has a law");
+    if (image_ != nullptr && !used_image_) report_.warnings.push_back({WarningCode::materials, "", "the image is not used: no label of the mesh has a law"});
     return std::move(report_);
   }
 
@@ -92,8 +93,8 @@ class Assigner {
       if (m.fibres) {
         const std::size_t unclear = lay_fibres(model_, label, *m.fibres, where(label));
         if (unclear > 0)
-          report_.warnings.push_back("label " + std::to_string(label) + ": the way through the wall goes along the long axis in " + std::to_string(unclear) +
-                                     " elements, whose fibres take any direction across it");
+          report_.warnings.push_back(warning_at(WarningCode::materials, "label " + std::to_string(label), "the way through the wall goes along the long axis in " + std::to_string(unclear) +
+                                     " elements, whose fibres take any direction across it"));
       }
       for (const std::int32_t t : tets) {
         sets.modulus_mpa[t] = material.young_mpa;
@@ -118,10 +119,10 @@ class Assigner {
     const InsideVoxels voxels(*image_, model_.mesh, tets, plan_->mapping.erode_px);
     row.voxels = voxels.used();
     if (voxels.used() == 0)
-      report_.warnings.push_back("label " + std::to_string(label) + " holds no voxel's centre of the image: intensities are taken as they are around it");
+      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label), "label " + std::to_string(label) + " holds no voxel's centre of the image: intensities are taken as they are around it"});
     else if (voxels.eroded_px() < plan_->mapping.erode_px)
-      report_.warnings.push_back("label " + std::to_string(label) + " is too thin for --erode " + std::to_string(plan_->mapping.erode_px) + ": " +
-                                 std::to_string(voxels.eroded_px()) + " is used");
+      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label), "label " + std::to_string(label) + " is too thin for --erode " + std::to_string(plan_->mapping.erode_px) + ": " +
+                                 std::to_string(voxels.eroded_px()) + " is used"});
     const double voxel_mm = *std::min_element(image_->spacing_mm.begin(), image_->spacing_mm.end());
     std::vector<ModulusLaw::Value> values = map_modulus(model_.mesh, tets, voxels, voxel_mm, law, plan_->mapping);
 

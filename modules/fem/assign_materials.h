@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "fem/material_law.h"
 #include "model/intensity_volume.h"
 #include "model/solver_model.h"
@@ -24,7 +25,7 @@ struct MaterialRow {
 
 struct MaterialReport {
   std::vector<MaterialRow> labels;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Checks a plan against the labels (with their solver names) before anything long begins.

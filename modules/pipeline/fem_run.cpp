@@ -9,6 +9,7 @@
 
 #include "base/cancel.h"
 #include "base/error.h"
+#include "base/warning.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/element_quality.h"
@@ -167,10 +168,10 @@ class FemRun {
     if (file.tets.empty()) fail_input("the mesh has no tetrahedra", path, "give a volume mesh, or labels");
     report.input.path = path;
     report.input.kind = "mesh";
-    for (const std::string& note : file.notes) report.warnings.push_back(note);
+    for (const std::string& note : file.notes) report.warnings.push_back({WarningCode::mesh_converted, path, note});
     if (file.label_source == LabelSource::none)
-      report.warnings.push_back(path + ": no cell array holds labels: every element has label 1 (name an array with --label-array)");
-    if (!file.space) report.warnings.push_back(path + ": does not say its frame; it is taken as LPS");
+      report.warnings.push_back(warning_at(WarningCode::labels_matched, path, "no cell array holds labels: every element has label 1 (name an array with --label-array)"));
+    if (!file.space) report.warnings.push_back(warning_at(WarningCode::frame, path, "does not say its frame; it is taken as LPS"));
     MeshProduct product;
     product.mesh.space = file.space.value_or(Space::lps);
     written_ = product.mesh.space == Space::none ? Space::none : o_.mesh.space == "ras" ? Space::ras : Space::lps;
@@ -245,7 +246,7 @@ class FemRun {
     if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
       mesh.mid.clear();
       mesh.wedge_mid.clear();
-      report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
+      report.warnings.push_back({WarningCode::element_order, "", "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
     }
     add_label_rows(report, product.labels);
     // A mesh whose parts have nodes of their own is judged as one body.
@@ -253,9 +254,9 @@ class FemRun {
     if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {
       const std::string text = std::to_string(twins) + " nodes lie exactly on another one";
       if (o_.parts.empty()) {
-        report.warnings.push_back(text + " and stay apart from it; --parts makes contact or ties of such faces");
+        report.warnings.push_back({WarningCode::coincident_nodes, "", text + " and stay apart from it; --parts makes contact or ties of such faces"});
       } else {
-        report.warnings.push_back(text + ": they were joined to it before --parts");
+        report.warnings.push_back({WarningCode::coincident_nodes, "", text + ": they were joined to it before --parts"});
         mesh = whole;
         walls_.clear();  // they name the nodes before
       }
@@ -264,7 +265,7 @@ class FemRun {
     whole.faces = faces_of_tets(whole);
     judge(whole, report);
     if (!report.volume->conforms)
-      report.warnings.push_back("the mesh does not conform: faces or edges of its tetrahedra do not match");
+      report.warnings.push_back({WarningCode::not_conforming, "", "the mesh does not conform: faces or edges of its tetrahedra do not match"});
   }
 
   /// Its surface only for a report.
@@ -287,7 +288,7 @@ class FemRun {
   struct Built {
     SolverModel model;
     MaterialReport materials;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
   };
 
   void model(MeshProduct product, RunReport& report, AtomicFiles& files) {
@@ -296,16 +297,16 @@ class FemRun {
     if (o_.accuracy_rel) accuracy = refine_until_accurate(product, built);
     product.mesh = TetMesh();
     const SolverModel& model = built.model;
-    for (const std::string& w : built.warnings) report.warnings.push_back(w);
+    for (const Warning& w : built.warnings) report.warnings.push_back(w);
     report.fem = summary(model, built.materials);
     if (asks_for_html(o_.mesh.reports)) report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
     report.fem->accuracy = std::move(accuracy);
-    if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back(not_reached(*report.fem->accuracy));
+    if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back({WarningCode::accuracy, "", not_reached(*report.fem->accuracy)});
 
     MeshWriteOptions write = o_.mesh.write;
     for (const std::string& path : o_.mesh.outputs) {
       if (!is_volume_format(path)) continue;
-      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
+      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back({WarningCode::format_loss, path, loss});
       write_model(files, path, model, write);
     }
   }
@@ -383,13 +384,13 @@ class FemRun {
     SolverModel& model = out.model;
 
     if (image_) {
-      for (const std::string& w : image_->warnings) out.warnings.push_back(w);
+      for (const Warning& w : image_->warnings) out.warnings.push_back(w);
       if (product.mesh.space == Space::none)
         fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
     }
     out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr);
-    for (const std::string& w : out.materials.warnings) out.warnings.push_back(w);
-    if (!plan_) out.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
+    for (const Warning& w : out.materials.warnings) out.warnings.push_back(w);
+    if (!plan_) out.warnings.push_back({WarningCode::materials, "", "no --materials: decks that need materials carry placeholders (E = 1 MPa)"});
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
     if (plan_) apply_load_case(model, plan_->load_case, o_.materials);
     JoinOptions join;
@@ -399,8 +400,8 @@ class FemRun {
     join_parts(model, join);
     check_supports(model, o_.materials);
     if (model.mesh.mid.empty() && !model.sets.steps.empty())
-      out.warnings.push_back("linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
-                                "take --order 2 for figures that are to be relied on");
+      out.warnings.push_back({WarningCode::element_order, "", "linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
+                                "take --order 2 for figures that are to be relied on"});
     return out;
   }
 

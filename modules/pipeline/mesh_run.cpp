@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/stage_clock.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "mesh/voids.h"
 #include "model/label_table.h"
 #include "model/space.h"
@@ -54,7 +55,7 @@ class MeshRun {
   }
 
  private:
-  void warn(const std::string& text) { report_.warnings.push_back(text); }
+  void warn(Warning w) { report_.warnings.push_back(std::move(w)); }
 
   void read() {
     InputOptions input = o_.input;
@@ -122,8 +123,8 @@ class MeshRun {
   }
 
   void take_figures() {
-    for (const std::string& w : input_.warnings) warn(w);
-    for (const std::string& w : mesh_.warnings) warn(w);
+    for (const Warning& w : input_.warnings) warn(w);
+    for (const Warning& w : mesh_.warnings) warn(w);
     for (const StageTime& t : mesh_.stages) add_stage_time(report_.stages, t);
     lost_detail_ = mesh_.lost_detail;
     report_.input.axis = std::string(1, "xyz"[mesh_.contours.axis]);
@@ -158,7 +159,7 @@ class MeshRun {
     if (wants_fidelity() && labels() != nullptr) judge_fidelity();
     fill_label_rows(report_, fidelity_.empty() ? nullptr : &fidelity_);
     for (const LabelReport& row : report_.labels)
-      if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
+      if (!row.closed) warn({WarningCode::not_closed, "label " + std::to_string(row.label), "label " + std::to_string(row.label) + " has no closed surface"});
     if (!o_.reports.empty() || o_.full_report) give_verdicts();
   }
 
@@ -182,14 +183,14 @@ class MeshRun {
     fidelity_ = check_fidelity(mesh_.surface, *labels(), options);
     for (const LabelFidelity& f : fidelity_)
       if (f.missing_components > 0)
-        lost("label " + std::to_string(f.label) + ": " + std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) + " components are missing");
+        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label), std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) + " components are missing"));
       else if (!f.components_match)
-        lost("label " + std::to_string(f.label) + ": the surface's pieces do not match the input's components one to one");
+        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label), "the surface's pieces do not match the input's components one to one"));
   }
 
-  void lost(const std::string& text) {
-    warn(text);
-    lost_detail_ = lost_detail_.empty() ? text : lost_detail_;
+  void lost(const Warning& w) {
+    warn(w);
+    lost_detail_ = lost_detail_.empty() ? w.text : lost_detail_;
   }
 
   void write_offending(const Refusal& refusal) {
@@ -201,7 +202,7 @@ class MeshRun {
     const std::string base = o_.outputs.empty() ? o_.reports[0] : o_.outputs[0];
     const std::string path = base.substr(0, base.rfind('.')) + ".offending.vtp";
     write_surface(files_, path, part, write_options());
-    warn("the offending triangles are in " + path);
+    warn({WarningCode::file_written, path, "the offending triangles are in " + path});
   }
 
   MeshWriteOptions write_options() const {
@@ -230,7 +231,7 @@ class MeshRun {
         write_surface(files_, path, mesh_.surface, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);
       } else if (!model_) {
-        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty()) warn(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
+        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty()) warn(warning_at(WarningCode::format_loss, path, "the format has no pyramids; wedges and pyramids are divided into tetrahedra"));
         write_volume(files_, path, *mesh_.tets, write_options());
       }
     }
@@ -260,8 +261,8 @@ class MeshRun {
     check.threads = o_.mesh.threads;
     const SurfaceCheck s = check_surface(rounded, check);
     if (s.self_intersections > 0)
-      warn(path + ": rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
-           " pairs of triangles touch or cross; the other formats keep the checked surface");
+      warn(warning_at(WarningCode::format_loss, path, "rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
+           " pairs of triangles touch or cross; the other formats keep the checked surface"));
   }
 
   void draw() {

@@ -31,7 +31,7 @@ struct MeshRunOptions {
   bool full_report = false;                       ///< fidelity and verdicts also where no report is written
   std::string command = "mesh", version;
   std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report
-  std::vector<std::string> notes;                 ///< warnings of the caller, for the report
+  std::vector<Warning> notes;                     ///< warnings of the caller, for the report
 };
 
 /// Takes the place of writing volume files: gets the mesh, adds to the report, writes to the files.

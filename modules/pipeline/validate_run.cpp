@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "model/space.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
@@ -95,11 +96,11 @@ class ValidateRun {
     if (folder.empty() && !o_.reports.empty() && o_.reports[0].rfind('/') != std::string::npos) folder = o_.reports[0].substr(0, o_.reports[0].rfind('/'));
     const std::string path = (folder.empty() ? "" : folder + "/") + name + ".defects.vtp";
     write_surface(files, path, part);
-    report.warnings.push_back("the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1");
+    report.warnings.push_back({WarningCode::file_written, path, "the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1"});
   }
 
  private:
-  void warn(const std::string& text) { report_.warnings.push_back(text); }
+  void warn(Warning w) { report_.warnings.push_back(std::move(w)); }
 
   void read(const std::string& path) {
     file_ = read_mesh(path, o_.read);
@@ -110,7 +111,7 @@ class ValidateRun {
     m.order = file_.midside.empty() ? 1 : 2;
     if (!o_.reports.empty()) m.sha256 = sha256_of_file(path);
     report_.mesh = std::move(m);
-    for (const std::string& n : file_.notes) warn(n);
+    for (const std::string& n : file_.notes) warn({WarningCode::mesh_converted, file_.path, n});
     if (file_.tets.empty() && file_.wedges.empty()) {
       surface_.points = std::move(file_.points);
       surface_.triangles = std::move(file_.triangles);
@@ -127,7 +128,7 @@ class ValidateRun {
   }
 
   void turn_round() {
-    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_)) warn(note);
+    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_)) warn({WarningCode::mesh_converted, file_.path, note});
   }
 
   // ---- frame
@@ -180,7 +181,7 @@ class ValidateRun {
     if (lps == 0 && ras == 0) no_overlap("neither as LPS nor as RAS", {});
     lies_in(ras > lps ? Space::ras : Space::lps);
     m.space_reason = "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
-    if (std::abs(lps - ras) < 0.05) warn("the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space");
+    if (std::abs(lps - ras) < 0.05) warn({WarningCode::frame, file_.path, "the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space"});
     to_lps();
   }
 
@@ -338,7 +339,7 @@ class ValidateRun {
       to[1] = labels_[best - 1].number;
       matched_ = ", it fits label " + std::to_string(to[1]) + " best (Dice " + percent(one) + "; all together " + percent(all) + ")";
     }
-    warn("the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ + "; --label tells which");
+    warn({WarningCode::labels_matched, file_.path, "the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ + "; --label tells which"});
     if (!union_) keep_only(to[1]);
   }
 
@@ -352,14 +353,14 @@ class ValidateRun {
     for (const Label l : of_mesh) to[l] = asked(l) ? l : 0;
     forget(unknown);
     if (of_mesh.size() == 1 && labels_.size() > 1) {
-      warn("the mesh has label " + list(of_mesh) + " alone: only that label is judged");
+      warn({WarningCode::labels_matched, file_.path, "the mesh has label " + list(of_mesh) + " alone: only that label is judged"});
       keep_only(*of_mesh.begin());
     }
   }
 
   /// Labels of the mesh that the input does not have, or that were not requested, are background.
   void forget(const std::set<Label>& unknown) {
-    if (!unknown.empty()) warn("labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown));
+    if (!unknown.empty()) warn({WarningCode::labels_matched, file_.path, "labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown)});
   }
 
   void by_name(const std::set<Label>& of_mesh, std::map<Label, Label>& to) {
@@ -397,7 +398,7 @@ class ValidateRun {
       to[o.mesh_labels[m]] = target;
       if (m < 12) text += (m ? ", " : "") + std::to_string(o.mesh_labels[m]) + " as " + std::to_string(target) + " (Dice " + percent(o.dice(m, best)) + ")";
     }
-    warn(why + ": its labels are taken for those that they overlap best: " + text);
+    warn({WarningCode::labels_matched, file_.path, why + ": its labels are taken for those that they overlap best: " + text});
     if (of_mesh.size() == 1 && labels_.size() > 1 && to.begin()->second != 0) keep_only(to.begin()->second);
   }
 

@@ -412,7 +412,7 @@ std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
       continue;
     }
     out += "<ul class=\"warnings\">\n";
-    for (const std::string& w : s.report->warnings) out += "<li>" + escaped(w) + "</li>\n";
+    for (const Warning& w : s.report->warnings) out += "<li>" + escaped(w.text) + "</li>\n";
     out += "</ul>\n";
   }
   for (const HtmlSubject& s : subjects) out += stages_table(*s.report, subjects.size() > 1 ? " of " + s.name : "");

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/warning.h"
 #include "volume/compact.h"
 #include "volume/improve_tets.h"
 #include "volume/relax_surface.h"
@@ -301,7 +302,7 @@ class Filler {
     reply = worker::run(program_, request, deadline, options_.given_up);
     const std::lock_guard<std::mutex> lock(warnings_mutex_);
     if (reply.killed) retry_is_useless_ = killed_ = true;
-    else warnings_.push_back("the volume mesher was started again, as " + how);
+    else warnings_.push_back({WarningCode::mesher, "", "the volume mesher was started again, as " + how});
     return reply;
   }
 
@@ -507,7 +508,7 @@ class Filler {
   worker::Program program_;
   Clock::time_point deadline_;
   Compact input_;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
   std::mutex warnings_mutex_;
   std::atomic<bool> killed_{false};    // twice in a row
   std::atomic<bool> retry_is_useless_{false};  // no worker to be had, or an invalid complex: trying again is no use

@@ -256,7 +256,7 @@ TEST(HtmlReport, NothingOfTheInputCanActAsHtml) {
   boxes.volume.labels[3].name = evil;
   RunReport r = plain_report("/data/" + evil + ".nii.gz");
   r.options = {{evil, evil}};
-  r.warnings = {evil};
+  r.warnings = {{WarningCode::other, "", evil}};
   r.input.kind = evil;
   LabelReport row;
   row.label = 3;
@@ -365,7 +365,7 @@ TEST(HtmlReport, WithoutLabelsPlanesAreSpreadOverTheMesh) {
 
 TEST(HtmlReport, NamesThatAreNotUtf8DoNotBreakThePage) {
   RunReport r = plain_report("caf\xe9.nii.gz");
-  r.warnings = {"\xff\xfe"};
+  r.warnings = {{WarningCode::other, "", "\xff\xfe"}};
   const std::string html = page(TwoBoxes().scene(), r);
   EXPECT_NE(html.find("caf\xef\xbf\xbd.nii.gz"), std::string::npos);
   EXPECT_EQ(html.find('\xff'), std::string::npos);
