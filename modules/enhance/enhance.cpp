@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/warning.h"
+#include "enhance/expected_tets.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
 #include "enhance/separate.h"
@@ -19,8 +20,6 @@ namespace stackmesh {
 namespace {
 
 constexpr double kTriangleLimit = 50e6;
-// Measured: 1.9 tetrahedra a triangle in a thin skull, 3 to 4 in a heart, 9.5 in lungs with fine triangles.
-constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
 // Without any size requested: tetrahedra of one label, for each further one, and at most.
 constexpr std::size_t kUsualTets = 150000, kMoreTets = 50000, kMostTets = 1000000;
 // The edges that come out scatter about 0.95 of what the remesher aims at.
@@ -282,51 +281,12 @@ class Enhancement {
     return s;
   }
 
-  /// Tetrahedra that the sizes mean: a layer under each label's triangles, and what a thick label holds below it.
-  struct ExpectedTets {
-    double layer = 0, depth = 0;
-    /// With all sizes this many times as long.
-    double at(double longer) const { return layer / (longer * longer) + depth / (longer * longer * longer); }
-  };
-  ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size) const {
-    const std::size_t labels = mesh.labels().size();
-    std::vector<double> area(labels, 0), triangles(labels, 0);
-    for (const MeshTriangle& t : mesh.triangles) {
-      if (t.patch < 0) continue;
-      const double l = (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3, a = norm(mesh.area_vector(t.v));
-      for (std::int32_t side : mesh.sides(t.patch)) {
-        area[side] += a;
-        triangles[side] += a / (kTriangleArea * l * l);
-      }
-    }
-    ExpectedTets out;
-    for (std::size_t i = 0; i < labels; ++i) {
-      const auto v = volumes_.find(mesh.labels()[i]);
-      if (v == volumes_.end() || !(area[i] > 0)) continue;
-      const double l = std::sqrt(area[i] / (kTriangleArea * triangles[i]));
-      out.layer += kTetsOfLayer * triangles[i];
-      out.depth += kTetsOfDepth * triangles[i] * v->second / (area[i] * l);
-    }
-    return out;
-  }
-
-  /// By what the sizes have to be multiplied for as many tetrahedra as the target says.
-  double towards_target(const ComplexMesh& mesh, const std::vector<double>& size, double target) const {
-    const ExpectedTets tets = expected_tets(mesh, size);
-    double low = 0.01, high = 100;
-    for (int step = 0; step < 40; ++step) {
-      const double middle = std::sqrt(low * high);
-      (tets.at(middle) > target ? low : high) = middle;
-    }
-    return high;
-  }
-
   /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
   /// Shorter ones only for a target that was requested.
   /// @return the triangles that go with the target.
   double coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
     const std::size_t target = o_.target_tets.value_or(std::min(kMostTets, kUsualTets + kMoreTets * (volumes_.empty() ? 0 : volumes_.size() - 1)));
-    const double longer = towards_target(mesh, size, static_cast<double>(target));
+    const double longer = expected_tets(mesh, size, volumes_).times_longer_for(static_cast<double>(target));
     const double triangles = expected_triangles(mesh, size) / (longer * longer);
     if (o_.target_tets && longer < 0.98) {
       result_.coarsened = longer;
@@ -382,7 +342,7 @@ class Enhancement {
     if ((o_.target_tets || o_.usual_target) && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
-    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size).at(1));
+    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size, volumes_).at(1));
     refuse_giants(triangles);
     if (!reference_) reference_.emplace(mesh, reference_cell_mm(), o_.threads);
     const Reference& reference = *reference_;
