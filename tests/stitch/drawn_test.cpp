@@ -79,7 +79,7 @@ Made make(const std::vector<LabelContours>& files, ContourStackOptions options =
 
 TEST(DrawnDetail, APixelComesFromWhatWasDrawnNotFromLongEdges) {
   const auto pixel = [](const std::function<std::vector<ContourPolygon>(double)>& at) {
-    std::vector<std::string> w;
+    std::vector<Warning> w;
     return sections_from_contours({file_of(1, {0, 3, 6}, at)}, w).pixel_mm;
   };
   EXPECT_NEAR(pixel([](double) { return std::vector{box(-50, -50, 50, 50)}; }), 100.0 / 24, 0.01);
