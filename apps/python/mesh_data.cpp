@@ -16,16 +16,18 @@ static_assert(offsetof(InterfaceTriangle, above) == offsetof(InterfaceTriangle, 
 
 }  // namespace
 
-MeshData::MeshData(MadeMesh made) : write_(std::move(made.write)), has_voids_(made.has_voids), space_(write_.space == WorldSpace::lps ? "lps" : write_.space == WorldSpace::ras ? "ras" : "none") {
+MeshData::MeshData(MadeMesh made) : write_(std::move(made.write)), has_voids_(made.has_voids) {
   // As files have them: preparing what was prepared changes nothing.
   PreparedMesh surface = prepare_surface(made.surface, write_, "the mesh");
+  surface_.space = made.surface.space;
   surface_.points = std::move(surface.points);
   surface_.triangles = std::move(surface.triangles);
   labels_ = std::move(surface.named);
   if (!made.tets) return;
   PreparedMesh volume = prepare_volume(*made.tets, write_, "the mesh");
+  const Space space = made.tets->space;
   made.tets.reset();
-  tets_.emplace();
+  tets_.emplace().space = space;
   tets_->points = std::move(volume.points);
   tets_->tets = std::move(volume.tets);
   tets_->mid = std::move(volume.tet_mids);

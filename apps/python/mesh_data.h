@@ -17,7 +17,7 @@ class MeshData : public std::enable_shared_from_this<MeshData> {
   explicit MeshData(MadeMesh made);
 
   bool has_tets() const { return tets_.has_value(); }
-  const std::string& space() const { return space_; }             ///< "lps", "ras" or "none"
+  std::string space() const { return to_text(surface_.space); }   ///< "lps", "ras" or "none"
   const std::vector<LabelInfo>& labels() const { return labels_; }  ///< of the mesh, with names that are unique
 
   /// Of the tetrahedra or, with `surface` (and where there are none), of the surface.
@@ -43,7 +43,6 @@ class MeshData : public std::enable_shared_from_this<MeshData> {
   std::optional<TetMesh> tets_;
   MeshWriteOptions write_;
   bool has_voids_;
-  std::string space_;
   std::vector<LabelInfo> labels_;
 };
 

@@ -48,7 +48,7 @@ Json describe(const Input& input, const Stack& s, const std::array<double, 3>& m
     }
   }
   j["labels"] = labels;
-  j["warnings"] = input.warnings;
+  j["warnings"] = texts_of(input.warnings);
   return j;
 }
 

@@ -1,3 +1,4 @@
+#include "base/warning.h"
 #include "options.h"
 
 #include <cmath>
@@ -207,8 +208,8 @@ void add_memory_option(CLI::App& command) {
       "most memory that this process, and each that it starts, may take: 4GB, 512MB (default: what the machine or its control group has)");
 }
 
-void print_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& w : warnings) std::fprintf(stderr, "stackmesh: warning: %s\n", printable(w).c_str());
+void print_warnings(const std::vector<Warning>& warnings) {
+  for (const Warning& w : warnings) std::fprintf(stderr, "stackmesh: warning: %s\n", printable(w.text).c_str());
 }
 
 }  // namespace stackmesh::app

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/monitor.h"
+#include "base/warning.h"
 #include "pipeline/input.h"
 #include "pipeline/layers.h"
 #include "sections/volume_sections.h"
@@ -67,6 +68,6 @@ void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::s
 void add_memory_option(CLI::App& command);
 
 /// A warning as a line on stderr.
-void print_warnings(const std::vector<std::string>& warnings);
+void print_warnings(const std::vector<Warning>& warnings);
 
 }  // namespace stackmesh::app

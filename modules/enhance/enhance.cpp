@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/warning.h"
+#include "enhance/expected_tets.h"
 #include "enhance/remesh.h"
 #include "enhance/ridges.h"
 #include "enhance/separate.h"
@@ -18,8 +20,6 @@ namespace stackmesh {
 namespace {
 
 constexpr double kTriangleLimit = 50e6;
-// Measured: 1.9 tetrahedra a triangle in a thin skull, 3 to 4 in a heart, 9.5 in lungs with fine triangles.
-constexpr double kTetsOfLayer = 1.7, kTetsOfDepth = 0.38;
 // Without any size requested: tetrahedra of one label, for each further one, and at most.
 constexpr std::size_t kUsualTets = 150000, kMoreTets = 50000, kMostTets = 1000000;
 // The edges that come out scatter about 0.95 of what the remesher aims at.
@@ -81,6 +81,7 @@ class Enhancement {
       remesh_mesh(mesh);
       if (stands(SurfaceLevel::enhanced, mesh)) {
         result_.complex = mesh.to_complex();
+        result_.complex.space = stitched_.space;
         compare_volumes(mesh);
         progress_.advance(1);
         return std::move(result_);
@@ -123,7 +124,7 @@ class Enhancement {
 
   static std::string text(const ShellCount& c) { return std::to_string(c.outer) + " pieces and " + std::to_string(c.inward) + " holes"; }
 
-  void warn(const std::string& text) { result_.warnings.push_back(text); }
+  void warn(Warning w) { result_.warnings.push_back(std::move(w)); }
 
   /// True when the whole surface is as sound as the stitched one, which an exact test of all its triangles says.
   bool stands(SurfaceLevel level, const ComplexMesh& mesh) {
@@ -139,7 +140,7 @@ class Enhancement {
       for (const auto& [label, was] : shells_)
         if (const ShellCount is = shells[label]; !(is == was))
           why = "label " + std::to_string(label) + " went from " + text(was) + " to " + text(is);
-    warn("the " + std::string(to_text(level)) + " surface was given up: " + why);
+    warn({WarningCode::not_enhanced, "", "the " + std::string(to_text(level)) + " surface was given up: " + why});
     return false;
   }
 
@@ -241,8 +242,8 @@ class Enhancement {
     s.gradation = o_.gradation;
     s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(usual_deviation_mm());
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
-      warn("a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
-           number(o_.pixel_mm) + " mm): it follows the steps of the voxels");
+      warn({WarningCode::edge_length, "", "a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
+           number(o_.pixel_mm) + " mm): it follows the steps of the voxels"});
     // As edges grow with the root of their deviation, so does the smallest one.
     s.edge_min_mm = o_.edge_min_mm.value_or(std::max(1.0, 1.5 * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0)) * o_.pixel_mm);
     std::map<Label, std::array<Vec3, 2>> boxes;
@@ -266,8 +267,8 @@ class Enhancement {
       const double asked = own != o_.label_edge_mm.end() ? own->second : o_.edge_length_mm.value_or(0);
       if (asked > longest / 3) {
         s.label_edge_mm[label] = kAim * longest / 3;
-        warn("label " + std::to_string(label) + ": an edge length of " + number(asked) +
-             " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used");
+        warn(warning_at(WarningCode::edge_length, "label " + std::to_string(label), "an edge length of " + number(asked) +
+             " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used"));
       } else if (own != o_.label_edge_mm.end()) {
         s.label_edge_mm[label] = kAim * asked;
       }
@@ -280,51 +281,12 @@ class Enhancement {
     return s;
   }
 
-  /// Tetrahedra that the sizes mean: a layer under each label's triangles, and what a thick label holds below it.
-  struct ExpectedTets {
-    double layer = 0, depth = 0;
-    /// With all sizes this many times as long.
-    double at(double longer) const { return layer / (longer * longer) + depth / (longer * longer * longer); }
-  };
-  ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size) const {
-    const std::size_t labels = mesh.labels().size();
-    std::vector<double> area(labels, 0), triangles(labels, 0);
-    for (const MeshTriangle& t : mesh.triangles) {
-      if (t.patch < 0) continue;
-      const double l = (size[t.v[0]] + size[t.v[1]] + size[t.v[2]]) / 3, a = norm(mesh.area_vector(t.v));
-      for (std::int32_t side : mesh.sides(t.patch)) {
-        area[side] += a;
-        triangles[side] += a / (kTriangleArea * l * l);
-      }
-    }
-    ExpectedTets out;
-    for (std::size_t i = 0; i < labels; ++i) {
-      const auto v = volumes_.find(mesh.labels()[i]);
-      if (v == volumes_.end() || !(area[i] > 0)) continue;
-      const double l = std::sqrt(area[i] / (kTriangleArea * triangles[i]));
-      out.layer += kTetsOfLayer * triangles[i];
-      out.depth += kTetsOfDepth * triangles[i] * v->second / (area[i] * l);
-    }
-    return out;
-  }
-
-  /// By what the sizes have to be multiplied for as many tetrahedra as the target says.
-  double towards_target(const ComplexMesh& mesh, const std::vector<double>& size, double target) const {
-    const ExpectedTets tets = expected_tets(mesh, size);
-    double low = 0.01, high = 100;
-    for (int step = 0; step < 40; ++step) {
-      const double middle = std::sqrt(low * high);
-      (tets.at(middle) > target ? low : high) = middle;
-    }
-    return high;
-  }
-
   /// Longer edges where more tetrahedra than the target are expected; small closed pieces stay as they are.
   /// Shorter ones only for a target that was requested.
   /// @return the triangles that go with the target.
   double coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
     const std::size_t target = o_.target_tets.value_or(std::min(kMostTets, kUsualTets + kMoreTets * (volumes_.empty() ? 0 : volumes_.size() - 1)));
-    const double longer = towards_target(mesh, size, static_cast<double>(target));
+    const double longer = expected_tets(mesh, size, volumes_).times_longer_for(static_cast<double>(target));
     const double triangles = expected_triangles(mesh, size) / (longer * longer);
     if (o_.target_tets && longer < 0.98) {
       result_.coarsened = longer;
@@ -333,8 +295,8 @@ class Enhancement {
     if (longer > 1.02) {
       result_.coarsened = longer;
       for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], kOfShell * shell_[v]));
-      warn("edges were made " + number(longer) + " times longer than the default, for a target of " +
-           std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones");
+      warn({WarningCode::edge_length, "", "edges were made " + number(longer) + " times longer than the default, for a target of " +
+           std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones"});
     }
     return triangles;
   }
@@ -360,8 +322,8 @@ class Enhancement {
     std::string why;
     for (const auto& [part, what] : {std::pair{walls, "where walls are thin"}, {pieces, "on small pieces"}, {bends, "where it bends"}})
       if (part > 0.005 * all) why += (why.empty() ? "" : ", ") + number(std::round(100 * part / all)) + " % " + what;
-    warn("edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " + number(std::round(100 * share)) + " % of the surface (" + why +
-         "), as longer ones would cut off too much there");
+    warn({WarningCode::edge_length, "", "edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " + number(std::round(100 * share)) + " % of the surface (" + why +
+         "), as longer ones would cut off too much there"});
   }
 
   void refuse_giants(double triangles) const {
@@ -380,7 +342,7 @@ class Enhancement {
     if ((o_.target_tets || o_.usual_target) && !o_.edge_length_mm) r.most_triangles = coarsen(mesh, size);
     const double triangles = expected_triangles(mesh, size);
     result_.expected_triangles = static_cast<std::size_t>(triangles);
-    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size).at(1));
+    result_.expected_tets = static_cast<std::size_t>(expected_tets(mesh, size, volumes_).at(1));
     refuse_giants(triangles);
     if (!reference_) reference_.emplace(mesh, reference_cell_mm(), o_.threads);
     const Reference& reference = *reference_;
@@ -480,8 +442,8 @@ class Enhancement {
     for (const auto& [label, v] : label_volumes(mesh)) {
       const double change = v / volumes_[label] - 1;
       if (std::abs(change) > 0.05)
-        warn("label " + std::to_string(label) + ": its volume changed by " + number(100 * change) + " % of " +
-             number(volumes_[label]) + " mm3 in the enhancement (it is small or thin for the edge length)");
+        warn(warning_at(WarningCode::volume_changed, "label " + std::to_string(label), "its volume changed by " + number(100 * change) + " % of " +
+             number(volumes_[label]) + " mm3 in the enhancement (it is small or thin for the edge length)"));
     }
   }
 

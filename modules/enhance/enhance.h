@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/monitor.h"
+#include "base/warning.h"
 #include "model/complex.h"
 
 namespace stackmesh {
@@ -50,12 +51,12 @@ struct EnhanceCounts {
 };
 
 struct EnhanceResult {
-  InterfaceComplex complex;  ///< stack coordinates, mm
+  InterfaceComplex complex;  ///< in the space of what was given
   SurfaceLevel level = SurfaceLevel::stitched;  ///< how far it came
   EnhanceCounts counts;
   std::size_t expected_triangles = 0, expected_tets = 0;  ///< from the sizes, before remeshing
   double coarsened = 1;  ///< by what edges were made longer (or shorter) for the target
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Smooths and remeshes a stitched complex for simulation (\cite wang2005, section 4; docs/enhancement.md).

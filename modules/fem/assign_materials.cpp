@@ -7,9 +7,11 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "fem/lay_fibres.h"
 #include "fem/map_modulus.h"
 #include "fem/tet_shape.h"
+#include "model/space.h"
 #include "model/wedge_shape.h"
 
 namespace stackmesh {
@@ -35,8 +37,8 @@ auto find(const Map& map, Label label, const std::string& name) {
 
 class Assigner {
  public:
-  Assigner(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options)
-      : model_(model), plan_(plan), image_(image), o_(options) {}
+  Assigner(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image)
+      : model_(model), plan_(plan), image_(image) {}
 
   MaterialReport run() {
     SolverSets& sets = model_.sets;
@@ -48,7 +50,7 @@ class Assigner {
     for (std::size_t e = 0; e < model_.mesh.elements(); ++e) elements[model_.mesh.labels[e]].push_back(static_cast<std::int32_t>(e));
     for (const auto& [label, list] : elements) label_material(label, list);
     for (ShellSet& s : sets.shells) skin(s);
-    if (image_ != nullptr && !used_image_) report_.warnings.push_back("the image is not used: no label of the mesh has a law");
+    if (image_ != nullptr && !used_image_) report_.warnings.push_back({WarningCode::materials, "", "the image is not used: no label of the mesh has a law"});
     return std::move(report_);
   }
 
@@ -91,8 +93,8 @@ class Assigner {
       if (m.fibres) {
         const std::size_t unclear = lay_fibres(model_, label, *m.fibres, where(label));
         if (unclear > 0)
-          report_.warnings.push_back("label " + std::to_string(label) + ": the way through the wall goes along the long axis in " + std::to_string(unclear) +
-                                     " elements, whose fibres take any direction across it");
+          report_.warnings.push_back(warning_at(WarningCode::materials, "label " + std::to_string(label), "the way through the wall goes along the long axis in " + std::to_string(unclear) +
+                                     " elements, whose fibres take any direction across it"));
       }
       for (const std::int32_t t : tets) {
         sets.modulus_mpa[t] = material.young_mpa;
@@ -114,13 +116,13 @@ class Assigner {
     SolverSets& sets = model_.sets;
     const ModulusLaw& law = plan_->laws.at(m.law);
     row.law = law.name;
-    const InsideVoxels voxels(*image_, model_.mesh, tets, plan_->mapping.erode_px, o_.ras);
+    const InsideVoxels voxels(*image_, model_.mesh, tets, plan_->mapping.erode_px);
     row.voxels = voxels.used();
     if (voxels.used() == 0)
-      report_.warnings.push_back("label " + std::to_string(label) + " holds no voxel's centre of the image: intensities are taken as they are around it");
+      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label), "label " + std::to_string(label) + " holds no voxel's centre of the image: intensities are taken as they are around it"});
     else if (voxels.eroded_px() < plan_->mapping.erode_px)
-      report_.warnings.push_back("label " + std::to_string(label) + " is too thin for --erode " + std::to_string(plan_->mapping.erode_px) + ": " +
-                                 std::to_string(voxels.eroded_px()) + " is used");
+      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label), "label " + std::to_string(label) + " is too thin for --erode " + std::to_string(plan_->mapping.erode_px) + ": " +
+                                 std::to_string(voxels.eroded_px()) + " is used"});
     const double voxel_mm = *std::min_element(image_->spacing_mm.begin(), image_->spacing_mm.end());
     std::vector<ModulusLaw::Value> values = map_modulus(model_.mesh, tets, voxels, voxel_mm, law, plan_->mapping);
 
@@ -165,8 +167,7 @@ class Assigner {
     std::size_t outside = 0;
     Vec3 p;
     for (const std::int32_t t : tets) {
-      Vec3 c = middle(t);
-      if (o_.ras) c = {-c.x, -c.y, c.z};
+      const Vec3 c = in_space(middle(t), model_.mesh.space, Space::lps);
       if (image_->contains(c)) continue;
       if (outside++ == 0) p = c;
     }
@@ -241,7 +242,6 @@ class Assigner {
   SolverModel& model_;
   const MaterialPlan* plan_;
   const IntensityVolume* image_;
-  const MaterialOptions& o_;
   MaterialReport report_;
   bool used_image_ = false;
 };
@@ -271,8 +271,8 @@ void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, 
   }
 }
 
-MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options) {
-  return Assigner(model, plan, image, options).run();
+MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image) {
+  return Assigner(model, plan, image).run();
 }
 
 }  // namespace stackmesh

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "fem/material_law.h"
 #include "model/intensity_volume.h"
 #include "model/solver_model.h"
@@ -24,11 +25,7 @@ struct MaterialRow {
 
 struct MaterialReport {
   std::vector<MaterialRow> labels;
-  std::vector<std::string> warnings;
-};
-
-struct MaterialOptions {
-  bool ras = false;  ///< the mesh's frame is RAS; the image's is always LPS
+  std::vector<Warning> warnings;
 };
 
 /// Checks a plan against the labels (with their solver names) before anything long begins.
@@ -39,9 +36,9 @@ void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, 
 /// Gives every element its material: constant by label, or from the image's intensities by a law. Only voxels inside the label
 /// (less a margin) speak for it. The modulus of each element is kept, and binned for decks that need a material for each.
 /// Skins get theirs. Without a plan, every label gets a placeholder.
-/// @param plan nullptr: none; @param image nullptr: none
+/// @param plan nullptr: none; @param image nullptr: none; it lies in LPS, whatever the space of the mesh
 /// @throws Error(input): a label or skin without material, a law that names a label that is not there, an image that does not cover an
 /// element of a label with a law, an element whose modulus is not positive (it is named); Error(usage): a law without an image
-MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image, const MaterialOptions& options);
+MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image);
 
 }  // namespace stackmesh

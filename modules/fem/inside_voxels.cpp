@@ -12,8 +12,8 @@ constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 
 
 }  // namespace
 
-InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, const std::vector<std::int32_t>& tets, int erode_px, bool ras)
-    : image_(image), ras_(ras) {
+InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, const std::vector<std::int32_t>& tets, int erode_px)
+    : image_(image), space_(mesh.space) {
   Vec3 low{1e300, 1e300, 1e300}, high = -1.0 * low;
   const auto extend = [&](std::int32_t v) {
     const Vec3 p = voxel(mesh.points[v]);

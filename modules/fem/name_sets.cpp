@@ -264,7 +264,7 @@ class Namer {
       for (const FaceList& l : lists_) all.push_back(l.name);
       return all;
     };
-    const SelectionContext context = {model_.mesh, faces_, model_.labels, find, names, place, o_.ras};
+    const SelectionContext context = {model_.mesh, faces_, model_.labels, find, names, place};
     for (const std::string& text : o_.selections) {
       const auto [name, list] = select_faces(text, context);
       if (taken_.count(lower_case(name)) > 0)

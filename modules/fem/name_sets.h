@@ -25,8 +25,7 @@ struct SetOptions {
   std::vector<std::pair<std::string, std::vector<Label>>> parts;  ///< --parts; a label in none is of the part "rest"
   std::vector<std::string> selections;                            ///< --select, see select_faces()
   std::vector<std::pair<Label, double>> skins;                    ///< --skin: shells of that thickness (mm) on the outer faces
-  bool ras = false;  ///< the mesh's frame is RAS: landmarks are turned into it
-  int times_cut = 0; ///< how often refine_tets() has cut the mesh: its sets are those of the mesh before, cut likewise
+  int times_cut = 0;  ///< how often refine_tets() has cut the mesh: its sets are those of the mesh before, cut likewise
 };
 
 /// Makes a solver model of a mesh: names its sets and parts its labels.

@@ -21,6 +21,7 @@ TetMesh ordered_mesh(const TetMesh& mesh) {
       number[v] = 0;
     });
   TetMesh out;
+  out.space = mesh.space;
   for (std::size_t i = 0; i < number.size(); ++i) {
     if (number[i] < 0) continue;
     number[i] = static_cast<std::int32_t>(out.points.size());

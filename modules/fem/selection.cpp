@@ -12,6 +12,7 @@
 #include "base/json_text.h"
 #include "base/text.h"
 #include "fem/solver_names.h"
+#include "model/space.h"
 
 namespace stackmesh {
 namespace {
@@ -52,8 +53,8 @@ Vec3 unit(Vec3 v, const std::string& text) {
   return (1 / length) * v;
 }
 
-/// Control points of a Slicer markups file, in the frame of the mesh.
-std::vector<Vec3> read_markups(const std::string& path, bool ras) {
+/// Control points of a Slicer markups file, in the space of the mesh.
+std::vector<Vec3> read_markups(const std::string& path, Space of_mesh) {
   const std::string text = read_json_text(path, "the markups file", "check the path");
   std::vector<Vec3> points;
   try {
@@ -62,15 +63,14 @@ std::vector<Vec3> read_markups(const std::string& path, bool ras) {
       const std::string system = markup.value("coordinateSystem", std::string("LPS"));
       if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
         fail_input("the markups are in an unknown frame '" + system + "'", path, "save them from Slicer as LPS or RAS");
-      const bool is_ras = system == "RAS" || system == "0";
+      const Space space = system == "RAS" || system == "0" ? Space::ras : Space::lps;
       if (markup.contains("coordinateUnits") && markup.at("coordinateUnits").is_string() && markup.at("coordinateUnits") != "mm")
         fail_input("the markups are not in mm", path, "save them in mm");
       for (const auto& point : markup.at("controlPoints")) {
         if (point.value("positionStatus", std::string("defined")) != "defined") continue;
         const auto p = point.at("position").get<std::vector<double>>();
         if (p.size() != 3) fail_input("a control point has not three coordinates", path, "save the markups again");
-        const double sign = is_ras == ras ? 1 : -1;
-        points.push_back({sign * p[0], sign * p[1], p[2]});
+        points.push_back(in_space({p[0], p[1], p[2]}, space, of_mesh));
       }
     }
   } catch (const nlohmann::json::exception&) {
@@ -139,7 +139,7 @@ Criterion make(const std::string& word, const SelectionContext& c, const std::st
     if (comma == std::string::npos) fail_usage("no radius behind the markups file", "--select " + text, grammar);
     const double radius = numbers(rest.substr(comma + 1), 1, 1, text)[0];
     if (radius <= 0) fail_usage("the radius is not above 0", "--select " + text, grammar);
-    const std::vector<Vec3> points = read_markups(rest.substr(0, comma), c.ras);
+    const std::vector<Vec3> points = read_markups(rest.substr(0, comma), c.mesh.space);
     out.miss = [=, &faces](std::int32_t f) {
       double least = std::numeric_limits<double>::max();
       for (const Vec3 p : points) least = std::min(least, norm(faces[f].centre - p));
@@ -188,10 +188,11 @@ Selection read_selection(const std::string& text, const SelectionContext& c) {
 }  // namespace
 
 void check_selection(const std::string& text, const std::vector<LabelInfo>& labels) {
-  const TetMesh no_mesh;
+  TetMesh no_mesh;
+  no_mesh.space = Space::none;
   const std::vector<BoundaryFace> no_faces;
   const std::vector<std::int32_t> any_set;
-  read_selection(text, {no_mesh, no_faces, labels, [&](const std::string&) { return &any_set; }, {}, {}, false});
+  read_selection(text, {no_mesh, no_faces, labels, [&](const std::string&) { return &any_set; }, {}, {}});
 }
 
 std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string& text, const SelectionContext& c) {

@@ -26,6 +26,7 @@ std::array<std::int32_t, 10> nodes_before(const TetMesh& mesh, std::size_t block
 TetMesh uncut_mesh(const TetMesh& mesh) {
   if (mesh.tets.size() % 8 != 0 || mesh.faces.size() % 4 != 0 || !mesh.wedges.empty()) fail_internal("the mesh was not cut into eight", "solver model");
   TetMesh out;
+  out.space = mesh.space;
   out.points = mesh.points;
   for (std::size_t b = 0; b < mesh.tets.size() / 8; ++b) {
     const auto node = nodes_before(mesh, b);

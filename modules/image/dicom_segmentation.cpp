@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/warning.h"
 #include "image/dicom_dataset.h"
 #include "image/dicom_grid.h"
 #include "image/segments.h"
@@ -81,7 +82,7 @@ class SegmentationReader {
     if (!fits) fail_input("a " + type + " segmentation with " + std::to_string(bits_) + " bits a pixel", path_, again);
     if (type_ == Type::fractional) {
       largest_ = number_of(data_, DCM_MaximumFractionalValue, path_).value_or(255);
-      volume_.warnings.push_back(path_ + ": its segments are fractional; what has at least half of the largest value counts as inside");
+      volume_.warnings.push_back(warning_at(WarningCode::values_changed, path_, "its segments are fractional; what has at least half of the largest value counts as inside"));
     }
   }
 
@@ -208,7 +209,7 @@ class SegmentationReader {
     if (declared_fits && (!fits(heights, smallest) || (two && is(thickness_, declared_gap_)))) return declared_gap_;
     char text[160];
     std::snprintf(text, sizeof text, ": it declares slices %.6g mm apart, but its frames are %.6g mm apart; the frames' own gap is taken", declared_gap_, smallest);
-    volume_.warnings.push_back(path_ + text);
+    volume_.warnings.push_back({WarningCode::header, path_, path_ + text});
     return smallest;
   }
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/warning.h"
 #include "image/dicom_dataset.h"
 #include "image/dicom_file.h"
 #include "image/dicom_grid.h"
@@ -67,7 +68,7 @@ class SeriesReader {
   std::array<double, 3> spacing_mm() const { return {grid_.pixel_x_mm, grid_.pixel_y_mm, gap_mm_}; }
   std::array<Vec3, 3> axes() const { return {grid_.x, grid_.y, grid_.normal}; }
   Vec3 origin_mm() const { return slices_[0].position; }
-  std::vector<std::string>& warnings() { return warnings_; }
+  std::vector<Warning>& warnings() { return warnings_; }
   const std::string& file_of(std::size_t slice) const { return slices_[slice].file; }
   bool is_even() const { return even_; }
 
@@ -92,7 +93,7 @@ class SeriesReader {
     rounded_ = std::max(rounded_, rounding.worst());
     return std::move(pixels.stored);
   }
-  void warn_of_rounding(std::vector<std::string>& warnings) const { warn_of_rounded_labels(rounded_, path_, warnings); }
+  void warn_of_rounding(std::vector<Warning>& warnings) const { warn_of_rounded_labels(rounded_, path_, warnings); }
 
  private:
   void find_slices() {
@@ -169,7 +170,7 @@ class SeriesReader {
       fail_input("the series holds several images at each position (times, echoes or copies), such as " + list_files(twice), path_,
                  "put one image of each position into a folder");
     if (!twice.empty())
-      warnings_.push_back(path_ + ": duplicated slices, of which the first is used: " + list_files(twice) + " are left out");
+      warnings_.push_back(warning_at(WarningCode::repeated, path_, "duplicated slices, of which the first is used: " + list_files(twice) + " are left out"));
     slices_ = std::move(kept);
   }
 
@@ -196,11 +197,11 @@ class SeriesReader {
       for (int m = 1; m < std::round(k) && m < 100000; ++m) lost.push_back(slices_[i].height + m * usual);
     }
     if (multiples)
-      warnings_.push_back(path_ + ": missing slices at heights " + list_heights(lost) + " mm (gap " + list_heights({usual}) +
-                          " mm); they are filled from their neighbours");
+      warnings_.push_back(warning_at(WarningCode::missing_slices, path_, "missing slices at heights " + list_heights(lost) + " mm (gap " + list_heights({usual}) +
+                          " mm); they are filled from their neighbours"));
     else
-      warnings_.push_back(path_ + ": the gaps of the slices are uneven, from " + list_heights({smallest}) + " to " +
-                          list_heights({*std::max_element(gaps.begin(), gaps.end())}) + " mm; the slices are taken to an even grid by their true positions");
+      warnings_.push_back(warning_at(WarningCode::missing_slices, path_, "the gaps of the slices are uneven, from " + list_heights({smallest}) + " to " +
+                          list_heights({*std::max_element(gaps.begin(), gaps.end())}) + " mm; the slices are taken to an even grid by their true positions"));
     const double wanted = multiples ? usual : smallest;
     const double count = std::round(span / wanted) + 1;
     if (count > 64.0 * static_cast<double>(n) + 256) fail_input("the gaps of the slices differ too much for an even grid", path_, "resample the series to even slices");
@@ -211,7 +212,7 @@ class SeriesReader {
   const std::string path_;
   std::string wanted_;
   std::vector<SliceFile> slices_;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
   DicomGrid grid_;
   int rows_ = 0, columns_ = 0, count_ = 0;
   double gap_mm_ = 1, alone_mm_ = 0, rounded_ = 0;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "image/data_files.h"
 #include "image/text_header.h"
 #include "image/volume_header.h"
@@ -94,7 +95,7 @@ class MetaImageReader {
       }
     const std::string unit = text_.get("distanceunits");
     if (!unit.empty() && unit != "?" && lower_case(unit) != "mm" && lower_case(unit) != "unknown")
-      header_.warnings.push_back(path_ + ": its unit '" + unit.substr(0, 40) + "' is not used; lengths are taken as mm");
+      header_.warnings.push_back(warning_at(WarningCode::header, path_, "its unit '" + unit.substr(0, 40) + "' is not used; lengths are taken as mm"));
     const std::vector<double> origin = numbers(first_of({"offset", "position", "origin"}), "Offset", path_);
     const std::vector<double> matrix = numbers(first_of({"transformmatrix", "rotation", "orientation"}), "TransformMatrix", path_);
     const std::size_t n = sizes_.size();

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "image/data_files.h"
 #include "image/text_header.h"
 #include "image/volume_header.h"
@@ -201,7 +202,7 @@ class NrrdReader {
       std::replace(text.begin(), text.end(), '"', ' ');
       for (const std::string& unit : words(text))
         if (unit != "mm" && unit != "???" && lower_case(unit) != "millimeter" && lower_case(unit) != "millimeters") {
-          header_.warnings.push_back(path_ + ": its unit '" + unit + "' is not known; lengths are taken as mm");
+          header_.warnings.push_back(warning_at(WarningCode::header, path_, "its unit '" + unit + "' is not known; lengths are taken as mm"));
           break;
         }
     }

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/warning.h"
 
 namespace stackmesh {
 namespace {
@@ -85,9 +86,9 @@ void Palette::fail_large(double value, const std::pair<std::string, std::string>
   fail_input("label number " + number(value) + " is too large", at(where), "number labels below 2147483648");
 }
 
-void warn_of_rounded_labels(double worst, const std::string& path, std::vector<std::string>& warnings) {
+void warn_of_rounded_labels(double worst, const std::string& path, std::vector<Warning>& warnings) {
   if (worst > 0)
-    warnings.push_back(path + ": its labels are stored with a slope and an intercept; values up to " + number(worst) + " off whole numbers were rounded");
+    warnings.push_back(warning_at(WarningCode::values_changed, path, "its labels are stored with a slope and an intercept; values up to " + number(worst) + " off whole numbers were rounded"));
 }
 
 }  // namespace stackmesh

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/label_volume.h"
 
 namespace stackmesh {
@@ -93,6 +94,6 @@ class LabelRounding {
 };
 
 /// Says that values were rounded, if any was.
-void warn_of_rounded_labels(double worst, const std::string& path, std::vector<std::string>& warnings);
+void warn_of_rounded_labels(double worst, const std::string& path, std::vector<Warning>& warnings);
 
 }  // namespace stackmesh

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "image/file_names.h"
 
 namespace stackmesh {
@@ -82,15 +83,15 @@ class Parser {
                      " sections where its header says " + std::to_string(announced),
                  path_, "write the file again");
     if (static_cast<std::int64_t>(file.sections.size()) > announced)
-      file.warnings.push_back(path_ + ": holds " + std::to_string(file.sections.size()) +
+      file.warnings.push_back(warning_at(WarningCode::header, path_, "holds " + std::to_string(file.sections.size()) +
                               " sections where its header says " + std::to_string(announced) +
-                              "; all are read");
+                              "; all are read"));
     if (repeats_ > 0)
-      file.warnings.push_back(path_ + ": " + std::to_string(repeats_) +
+      file.warnings.push_back(warning_at(WarningCode::repeated, path_, std::to_string(repeats_) +
                               (repeats_ == 1 ? " repeated point" : " repeated points") + " removed (" +
-                              repeats_where_ + (repeat_sections_ > 8 ? ", ..." : "") + ")");
+                              repeats_where_ + (repeat_sections_ > 8 ? ", ..." : "") + ")"));
     if (empty_ > 0)
-      file.warnings.push_back(path_ + ": " + std::to_string(empty_) + " contours without points left out");
+      file.warnings.push_back(warning_at(WarningCode::left_out, path_, std::to_string(empty_) + " contours without points left out"));
   }
 
  private:
@@ -154,8 +155,8 @@ class Parser {
                      std::to_string(announced) + " are announced",
                  path_ + ", " + where, "write the file again");
     if (vertices != announced)
-      file.warnings.push_back(path_ + ", " + where + ": " + std::to_string(vertices) + " vertices where " +
-                              std::to_string(announced) + " are announced; all are read");
+      file.warnings.push_back({WarningCode::header, path_ + ", " + where, path_ + ", " + where + ": " + std::to_string(vertices) + " vertices where " +
+                              std::to_string(announced) + " are announced; all are read"});
     if (removed > 0) {
       repeats_ += removed;
       if (++repeat_sections_ <= 8)

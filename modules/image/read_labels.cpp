@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "image/dicom_file.h"
 #include "image/dicom_segmentation.h"
 #include "image/dicom_series.h"
@@ -107,8 +108,8 @@ LabelVolume read_any(const std::string& path, const ReadOptions& options) {
     if (!dicom.any() || known.size() > dicom.size()) return read_files(files, path, options);
     LabelVolume volume = read_dicom(dicom, path, options);
     if (!known.empty())
-      volume.warnings.push_back(path + ": a folder of DICOM in which " + file_name_of(*std::min_element(known.begin(), known.end())) +
-                                (known.size() > 1 ? " and " + std::to_string(known.size() - 1) + " more files" : "") + " of another kind are left out");
+      volume.warnings.push_back(warning_at(WarningCode::left_out, path, "a folder of DICOM in which " + file_name_of(*std::min_element(known.begin(), known.end())) +
+                                (known.size() > 1 ? " and " + std::to_string(known.size() - 1) + " more files" : "") + " of another kind are left out"));
     return volume;
   }
   if (!fs::exists(status)) {

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/contours.h"
 
 namespace stackmesh {
@@ -10,7 +11,7 @@ namespace stackmesh {
 struct StructureSet {
   std::vector<LabelContours> structures;  ///< those requested, in the order asked (else the file's), each with contours
   Frame frame;                          ///< plane coordinates and height to LPS
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Reads the closed planar contours of the structures that `labels` names ("Heart,Lt_Lung"; empty: all) (open ones are closed, points and curves that are no outline left

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "model/label_table.h"
 
 namespace stackmesh {
@@ -118,7 +119,7 @@ class Joiner {
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < segments_.size(); ++s) {
       if (own[s] > 0) order.push_back(s);
-      else if (is_asked_[s] && voxels_[s] == 0) volume_.warnings.push_back(path_ + ": " + name_of(segments_[s]) + " has no voxel and is left out");
+      else if (is_asked_[s] && voxels_[s] == 0) volume_.warnings.push_back(warning_at(WarningCode::left_out, path_, name_of(segments_[s]) + " has no voxel and is left out"));
     }
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return segments_[a].number < segments_[b].number; });
     std::vector<std::uint16_t> target(segments_.size() + 1, 0);
@@ -144,16 +145,16 @@ class Joiner {
         const std::string of_first = share(static_cast<double>(shared), static_cast<double>(voxels_[first])),
                           of_loser = share(static_cast<double>(shared), static_cast<double>(voxels_[loser]));
         if (all_of(loser))
-          volume_.warnings.push_back(path_ + ": " + name_of(segments_[loser]) + " lies wholly under " + name_of(segments_[first]) +
-                                     ", which has priority (" + how_much + ")");
+          volume_.warnings.push_back(warning_at(WarningCode::overlap, path_, name_of(segments_[loser]) + " lies wholly under " + name_of(segments_[first]) +
+                                     ", which has priority (" + how_much + ")"));
         else if (all_of(first))
           inside[loser] += (inside[loser].empty() ? "" : ", ") + name_of(segments_[first]) + " (" + how_much + ")";
         else
-          volume_.warnings.push_back(path_ + ": " + name_of(segments_[first]) + " and " + name_of(segments_[loser]) + " overlap in " + how_much +
-                                     " (" + of_first + " and " + of_loser + " % of them), which went to " + name_of(segments_[first]));
+          volume_.warnings.push_back(warning_at(WarningCode::overlap, path_, name_of(segments_[first]) + " and " + name_of(segments_[loser]) + " overlap in " + how_much +
+                                     " (" + of_first + " and " + of_loser + " % of them), which went to " + name_of(segments_[first])));
       }
     for (const auto& [outer, names] : inside)
-      volume_.warnings.push_back(path_ + ": inside " + name_of(segments_[outer]) + ", and taken out of it: " + names);
+      volume_.warnings.push_back(warning_at(WarningCode::taken_out, path_, "inside " + name_of(segments_[outer]) + ", and taken out of it: " + names));
   }
 
   const std::vector<LabelInfo>& segments_;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "image/voxel_data.h"
 
 namespace stackmesh {
@@ -25,6 +26,6 @@ SliceImage read_png(const std::vector<unsigned char>& bytes, const std::string& 
 
 /// Calls page(image, number from 1, is there more than one) for every page of a TIFF file; palettes and "white is zero" do not
 /// change the stored numbers. @throws Error(input) naming file and page
-void read_tiff(const std::string& path, std::vector<std::string>& warnings, const std::function<void(SliceImage&&, int, bool)>& page);
+void read_tiff(const std::string& path, std::vector<Warning>& warnings, const std::function<void(SliceImage&&, int, bool)>& page);
 
 }  // namespace stackmesh

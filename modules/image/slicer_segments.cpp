@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/warning.h"
 
 namespace stackmesh {
 namespace {
@@ -81,7 +82,7 @@ SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::arr
   for (std::size_t i = 0; i < found.segments.size(); ++i)
     found.segments[i].label.number = own_numbers ? found.segments[i].value : static_cast<Label>(i + 1);
   if (!own_numbers)
-    found.warnings.push_back(path + ": segments of different layers have the same label value; they are numbered in their order");
+    found.warnings.push_back(warning_at(WarningCode::renumbered, path, "segments of different layers have the same label value; they are numbered in their order"));
 
   const std::vector<double> offset = numbers(header.get("=Segmentation_ReferenceImageExtentOffset"), "Segmentation_ReferenceImageExtentOffset", path);
   const std::array<double, 3> first = offset.size() == 3 ? std::array<double, 3>{offset[0], offset[1], offset[2]} : std::array<double, 3>{0, 0, 0};

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "image/text_header.h"
 #include "model/label_volume.h"
 
@@ -19,7 +20,7 @@ struct SlicerSegment {
 struct SlicerSegmentation {
   std::vector<SlicerSegment> segments;
   std::array<bool, 3> goes_on_low = {false, false, false}, goes_on_high = {false, false, false};  ///< the file is cropped there
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// @param size voxels along x, y, z; `layers` is 1 for a file of three dimensions.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/warning.h"
 #include "image/file_names.h"
 #include "image/palette.h"
 #include "image/quiet.h"
@@ -63,7 +64,7 @@ class Stacker {
     ++volume_.size[2];
   }
 
-  std::vector<std::string>& warnings() { return volume_.warnings; }
+  std::vector<Warning>& warnings() { return volume_.warnings; }
 
   LabelVolume finish(const std::string& path) {
     palette_.finish(volume_, path);
@@ -87,7 +88,7 @@ void add_file(Stacker& stack, const std::string& path) {
 }
 
 /// Warns of holes in the numbering; slices are stacked as neighbours all the same.
-void warn_of_missing(const std::vector<std::string>& files, std::vector<std::string>& warnings) {
+void warn_of_missing(const std::vector<std::string>& files, std::vector<Warning>& warnings) {
   std::vector<long long> numbers;
   std::string common;
   std::vector<std::string> names;
@@ -108,17 +109,17 @@ void warn_of_missing(const std::vector<std::string>& files, std::vector<std::str
   long long count = 0;
   for (std::size_t i = 1; i < numbers.size(); ++i) {
     if (numbers[i] == numbers[i - 1])
-      warnings.push_back("slice number " + std::to_string(numbers[i]) +
-                         " is there twice: " + file_name_of(files[i - 1]) + " and " + file_name_of(files[i]));
+      warnings.push_back({WarningCode::repeated, file_name_of(files[i]), "slice number " + std::to_string(numbers[i]) +
+                         " is there twice: " + file_name_of(files[i - 1]) + " and " + file_name_of(files[i])});
     for (long long n = numbers[i - 1] + step; step > 0 && n < numbers[i]; n += step) {
       if (++count > 10) break;
       missing += (missing.empty() ? "" : ", ") + std::to_string(n);
     }
   }
   if (count > 0)
-    warnings.push_back(std::string("missing slice number ") + missing + (count > 10 ? ", ..." : "") +
+    warnings.push_back({WarningCode::missing_slices, "", std::string("missing slice number ") + missing + (count > 10 ? ", ..." : "") +
                        " between " + file_name_of(files.front()) + " and " + file_name_of(files.back()) +
-                       ": the slices beside a hole are stacked as neighbours");
+                       ": the slices beside a hole are stacked as neighbours"});
 }
 
 }  // namespace
@@ -134,7 +135,7 @@ LabelVolume read_slices(const std::vector<std::string>& files,
   if (spacing_mm)
     volume.spacing_mm = *spacing_mm;
   else
-    volume.warnings.push_back("no voxel size is known: 1 x 1 x 1 mm is taken; give --spacing X,Y,Z");
+    volume.warnings.push_back({WarningCode::header, "", "no voxel size is known: 1 x 1 x 1 mm is taken; give --spacing X,Y,Z"});
   warn_of_missing(files, volume.warnings);
   return volume;
 }

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/warning.h"
 #include "image/slice_image.h"
 
 namespace stackmesh {
@@ -158,7 +159,7 @@ class TiffPage {
 
 }  // namespace
 
-void read_tiff(const std::string& path, std::vector<std::string>& warnings, const std::function<void(SliceImage&&, int, bool)>& page) {
+void read_tiff(const std::string& path, std::vector<Warning>& warnings, const std::function<void(SliceImage&&, int, bool)>& page) {
   const SilentTiff silent;
   const auto size = static_cast<double>(size_of_file(path, path));
   const std::unique_ptr<TIFF, void (*)(TIFF*)> file(TIFFOpen(path.c_str(), "rm"), TIFFClose);
@@ -174,7 +175,7 @@ void read_tiff(const std::string& path, std::vector<std::string>& warnings, cons
     if (TIFFReadDirectory(file.get()) != 1) fail_input("the TIFF file is damaged or truncated", path + ", page " + std::to_string(number + 1), again);
     several = true;
   }
-  if (reduced) warnings.push_back(path + ": pages that are smaller copies of others are left out");
+  if (reduced) warnings.push_back(warning_at(WarningCode::left_out, path, "pages that are smaller copies of others are left out"));
 }
 
 }  // namespace stackmesh

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/warning.h"
 #include "image/palette.h"
 #include "image/segments.h"
 #include "image/volume_header.h"
@@ -82,13 +83,13 @@ void by_type(VoxelType type, Read read) {
 
 /// All values, of which those that are not finite may stand for nothing.
 template <class T>
-void read_values(const VolumeHeader& header, const std::string& path, T* values, std::vector<std::string>& warnings) {
+void read_values(const VolumeHeader& header, const std::string& path, T* values, std::vector<Warning>& warnings) {
   read_voxel_data(header.data, path, values, warnings);
   if constexpr (std::is_floating_point_v<T>) {
     std::size_t bad = 0;
     for (std::uint64_t i = 0; header.nan_is_zero && i < header.data.count; ++i)
       if (!std::isfinite(values[i])) values[i] = 0, ++bad;
-    if (bad > 0) warnings.push_back(path + ": " + std::to_string(bad) + (bad == 1 ? " value that is" : " values that are") + " not finite, taken as 0");
+    if (bad > 0) warnings.push_back(warning_at(WarningCode::values_changed, path, std::to_string(bad) + (bad == 1 ? " value that is" : " values that are") + " not finite, taken as 0"));
   }
 }
 

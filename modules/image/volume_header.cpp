@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/warning.h"
 
 namespace stackmesh {
 namespace {
@@ -123,7 +124,7 @@ class NiftiReader {
     const double slope = real(112), intercept = real(116);
     if (slope == 0) return;  // "no scaling", whatever the intercept
     if (!std::isfinite(slope) || !std::isfinite(intercept)) {
-      header_.warnings.push_back(path_ + ": its scaling (scl_slope, scl_inter) is not finite; the stored numbers are taken as they are");
+      header_.warnings.push_back(warning_at(WarningCode::header, path_, "its scaling (scl_slope, scl_inter) is not finite; the stored numbers are taken as they are"));
       return;
     }
     header_.slope = slope;
@@ -165,7 +166,7 @@ class NiftiReader {
     const std::array<double, 3> stored = header_.spacing_mm;
     for (double& s : header_.spacing_mm) s *= unit_mm_;
     if (!has_q && !has_s) {
-      header_.warnings.push_back(path_ + ": carries no orientation; its axes are taken as left, posterior, superior");
+      header_.warnings.push_back(warning_at(WarningCode::header, path_, "carries no orientation; its axes are taken as left, posterior, superior"));
       return;
     }
     const bool by_s = has_s && (whole(254) == 1 || !has_q);
@@ -192,7 +193,7 @@ class NiftiReader {
     std::ostringstream text;
     text << path_ << ": its header gives voxel positions up to " << apart
          << " mm apart (pixdim, qform, sform); as ITK does, pixdim is the voxel size, and the qform holds unless the sform's code is 1";
-    header_.warnings.push_back(text.str());
+    header_.warnings.push_back({WarningCode::header, path_, text.str()});
   }
 
   const std::string path_;

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "image/file_names.h"
 #include "image/slicer_segments.h"
 #include "image/voxel_data.h"
@@ -21,7 +22,7 @@ struct VolumeHeader {
   double slope = 1, intercept = 0;     ///< what stands for a stored value v is slope * v + intercept
   bool nan_is_zero = false;            ///< NIfTI: values that are not finite stand for nothing, as its own library reads them
   SlicerSegmentation segmentation;     ///< NRRD: the segments of 3D Slicer, where it names any
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   bool is_scaled() const { return slope != 1 || intercept != 0; }
 };
 

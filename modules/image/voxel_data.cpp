@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "image/file_names.h"
 
 namespace stackmesh {
@@ -122,7 +123,7 @@ class Inflater {
   bool complete_ = false, ended_ = false;
 };
 
-void inflate_part(const DataPart& part, const std::string& path, unsigned char* out, std::uint64_t need, std::vector<std::string>& warnings) {
+void inflate_part(const DataPart& part, const std::string& path, unsigned char* out, std::uint64_t need, std::vector<Warning>& warnings) {
   Inflater stream(part, path);
   std::vector<unsigned char> rest(1 << 16);
   for (std::uint64_t left = part.skip; left > 0;) {
@@ -134,7 +135,7 @@ void inflate_part(const DataPart& part, const std::string& path, unsigned char* 
   std::uint64_t behind = 0;
   for (std::uint64_t got = 1; got > 0 && behind <= kTail; behind += got = stream.read(rest.data(), rest.size())) {}
   if (behind > kTail) {
-    warnings.push_back(where(part, path) + ": more data than its header says follow the voxels; they are not read, and the check sum at their end is not verified");
+    warnings.push_back(warning_at(WarningCode::left_out, where(part, path), "more data than its header says follow the voxels; they are not read, and the check sum at their end is not verified"));
     return;
   }
   if (!stream.complete()) damaged("cannot read the voxels: it is truncated: the compressed data end too early", where(part, path));
@@ -293,7 +294,7 @@ void require_inflated(const DataPart& part, const std::string& path, std::uint64
 
 }  // namespace
 
-void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<std::string>& warnings) {
+void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<Warning>& warnings) {
   const std::uint64_t share = share_of(data), need = share * bytes_of(data.type);
   for (const DataPart& part : data.parts) {
     const std::uint64_t have = bytes_there(part, path);
@@ -318,12 +319,12 @@ void check_voxel_data(const VoxelData& data, const std::string& path, std::vecto
         const std::string longer = "holds " + std::to_string(have) + " bytes where its header needs " + std::to_string(part.skip + need);
         if (data.parts.size() > 1)
           fail_input("a data file " + longer, where(part, path), "correct the sizes and the type in the header, or give the length of what is in front (HeaderSize, byte skip)");
-        warnings.push_back(where(part, path) + ": " + longer + "; the rest is not read");
+        warnings.push_back(warning_at(WarningCode::left_out, where(part, path), longer + "; the rest is not read"));
     }
   }
 }
 
-void read_voxel_data(const VoxelData& data, const std::string& path, void* memory, std::vector<std::string>& warnings) {
+void read_voxel_data(const VoxelData& data, const std::string& path, void* memory, std::vector<Warning>& warnings) {
   const std::uint64_t share = share_of(data), size = bytes_of(data.type);
   auto* out = static_cast<unsigned char*>(memory);
   for (const DataPart& part : data.parts) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
+
 namespace stackmesh {
 
 /// The number types in which volume files store a voxel.
@@ -37,11 +39,11 @@ struct VoxelData {
 /// its size (deflate cannot shrink data more than about 1032 times), and decoded without being kept where it claims hundreds of megabytes. A data file that is longer than what is read of it is a warning; of
 /// several files it is an error, as what is too much may be a header in front.
 /// @throws Error(input) naming the file that is missing, no regular file, or too short
-void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<std::string>& warnings);
+void check_voxel_data(const VoxelData& data, const std::string& path, std::vector<Warning>& warnings);
 
 /// Reads all values into `memory` of data.bytes() bytes, in this machine's byte order. Check sums of compressed streams are
 /// verified; bytes behind the voxels are not read beyond 16 MB, with a warning. @throws Error(input) naming the file
-void read_voxel_data(const VoxelData& data, const std::string& path, void* memory, std::vector<std::string>& warnings);
+void read_voxel_data(const VoxelData& data, const std::string& path, void* memory, std::vector<Warning>& warnings);
 
 /// The size of a regular file in bytes. @throws Error(input) when it is missing or is no regular file
 std::uint64_t size_of_file(const std::string& path, const std::string& what);

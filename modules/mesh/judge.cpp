@@ -1,19 +1,13 @@
 #include "mesh/judge.h"
 
-#include <utility>
+#include "model/space.h"
 
 namespace stackmesh {
-
-void to_world(std::vector<Vec3>& points, std::vector<InterfaceTriangle>& triangles, const Frame& frame) {
-  for (Vec3& p : points) p = frame.to_world(p);
-  if (frame.mirrors())
-    for (InterfaceTriangle& t : triangles) std::swap(t.v[1], t.v[2]);
-}
 
 Judgement judge(const InterfaceComplex& surface, const Frame& frame, int threads) {
   Judgement j;
   j.world = surface;
-  to_world(j.world.points, j.world.triangles, frame);
+  change_space(j.world, frame.world, frame);
   SurfaceCheckOptions check;
   check.threads = threads;
   j.check = check_surface(j.world, check);

@@ -1,7 +1,5 @@
 #pragma once
 // Private to the module: a surface in the coordinates that are handed out, and what the exact checks say of it.
-#include <vector>
-
 #include "model/complex.h"
 #include "model/geometry.h"
 #include "validate/check_surface.h"
@@ -13,9 +11,6 @@ struct Judgement {
   SurfaceCheck check;
   bool is_sound() const { return check.open_edges == 0 && check.self_intersections == 0; }
 };
-
-/// Stack coordinates to the world's; a mirroring frame turns triangles inside out, so they are turned back.
-void to_world(std::vector<Vec3>& points, std::vector<InterfaceTriangle>& triangles, const Frame& frame);
 
 /// @param surface in stack coordinates
 Judgement judge(const InterfaceComplex& surface, const Frame& frame, int threads);

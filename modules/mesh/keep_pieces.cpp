@@ -6,6 +6,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "base/warning.h"
 #include "validate/boundaries.h"
 
 namespace stackmesh {
@@ -17,7 +18,7 @@ struct Piece {
 };
 
 /// Sorts a label's pieces and says which go.
-std::vector<std::int32_t> left_out(Label label, std::vector<Piece> pieces, const PieceOptions& o, std::vector<std::string>& warnings) {
+std::vector<std::int32_t> left_out(Label label, std::vector<Piece> pieces, const PieceOptions& o, std::vector<Warning>& warnings) {
   std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.volume_mm3 > b.volume_mm3; });
   std::vector<std::int32_t> out;
   double volume = 0;
@@ -30,8 +31,8 @@ std::vector<std::int32_t> left_out(Label label, std::vector<Piece> pieces, const
   if (!out.empty()) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", volume);
-    warnings.push_back("label " + std::to_string(label) + ": " + std::to_string(out.size()) + " of its " + std::to_string(pieces.size()) + " pieces, " + text +
-                       " mm3 together, are left out, as --keep-largest or --min-piece asks");
+    warnings.push_back(warning_at(WarningCode::pieces_left_out, "label " + std::to_string(label), std::to_string(out.size()) + " of its " + std::to_string(pieces.size()) + " pieces, " + text +
+                       " mm3 together, are left out, as --keep-largest or --min-piece asks"));
   }
   return out;
 }
@@ -63,7 +64,7 @@ bool goes_round(const InterfaceComplex& c, const Boundaries& b, std::int32_t pie
 
 }  // namespace
 
-void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<std::string>& warnings) {
+void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<Warning>& warnings) {
   if (!options.any()) return;
   const std::array<int, 3> n = volume.size;
   std::vector<std::uint16_t>& voxels = volume.voxels;
@@ -95,7 +96,7 @@ void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<s
     if (voxels[p] != 0 && std::binary_search(gone.begin(), gone.end(), sets.find(static_cast<std::int32_t>(p)))) voxels[p] = 0;
 }
 
-void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::vector<std::string>& warnings) {
+void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::vector<Warning>& warnings) {
   if (!options.any()) return;
   const Boundaries b = find_boundaries(complex, 1);
   const std::size_t shells = b.piece_volume_mm3.size();
@@ -122,6 +123,7 @@ void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::ve
   }
   for (std::size_t s = 0; s < shells; ++s) gone[s] = gone[piece_of[s]];
   InterfaceComplex kept;
+  kept.space = complex.space;
   std::vector<std::int32_t> number(complex.points.size(), -1);
   for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
     InterfaceTriangle out = complex.triangles[t];

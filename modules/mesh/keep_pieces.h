@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/complex.h"
 #include "model/label_volume.h"
 
@@ -17,9 +18,9 @@ struct PieceOptions {
 
 /// Makes background of the pieces (6-connected voxels of one label) that the options leave out. What was left out is told in
 /// `warnings`, a line a label. A label stays in the list with no voxel.
-void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<std::string>& warnings);
+void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<Warning>& warnings);
 
 /// The same for a stitched complex: a piece is a closed part of a label, with the holes in it.
-void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::vector<std::string>& warnings);
+void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::vector<Warning>& warnings);
 
 }  // namespace stackmesh

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "base/cancel.h"
+#include "base/warning.h"
 #include "fair/true_grid.h"
 #include "mesh/stages.h"
+#include "model/space.h"
 #include "sections/far_sections.h"
 #include "sections/virtual_sections.h"
 
@@ -41,7 +43,7 @@ SectionStage sections_of(const LabelVolume& volume, LabelMesh& out, const Call& 
   s.far_apart = long_voxels(volume);
   if (!s.far_apart.empty() && !options.virtual_sections) options.virtual_sections = 0;
   VolumeSections made = volume_sections(volume, options, call.monitor);
-  for (const std::string& w : made.warnings) call.warnings.push_back(w);
+  for (const Warning& w : made.warnings) call.warnings.push_back(w);
   s.faired = std::move(made.faired);
   s.stack = std::move(made.contours.stack);
   out.contours.axis = made.contours.axis;
@@ -80,12 +82,12 @@ std::optional<Refusal> refusal_of(const LabelMesh& m, std::optional<Refusal> of_
   return no;
 }
 
-void warn_of_flat_tets(const LabelMesh& m, std::vector<std::string>& warnings) {
+void warn_of_flat_tets(const LabelMesh& m, std::vector<Warning>& warnings) {
   const VolumeCheck& v = *m.tets_check;
   if (m.level != SurfaceLevel::enhanced || (v.dihedral_min_deg >= 1 && v.dihedral_max_deg <= 179)) return;
   char text[120];
   std::snprintf(text, sizeof text, "the flattest tetrahedra have dihedral angles of %.2f to %.2f degrees", v.dihedral_min_deg, v.dihedral_max_deg);
-  warnings.push_back(std::string(text) + ": a solver may fail on them; the report's defects say where (--report R.html), another --edge-length may avoid them");
+  warnings.push_back({WarningCode::flat_elements, "", std::string(text) + ": a solver may fail on them; the report's defects say where (--report R.html), another --edge-length may avoid them"});
 }
 
 /// From sections to the checked mesh.
@@ -111,8 +113,7 @@ void finish(SectionStage sections, LabelMesh& out, const Call& call) {
   out.layers = std::move(tets.layers);
   call.clock.run("validate", [&] {
     if (!out.tets) return;
-    to_world(out.tets->points, out.tets->faces, out.frame);
-    if (out.frame.mirrors()) turn_all_round(*out.tets);
+    change_space(*out.tets, out.frame.world, out.frame);
     out.tets_check = check_volume(*out.tets, {o.threads});
     warn_of_flat_tets(out, call.warnings);
   });
@@ -137,7 +138,7 @@ LabelMesh mesh_volume(const LabelVolume& given, const MeshOptions& options, Moni
     out.input_volume_mm3 = volumes_of(changed ? *changed : given);
     if (options.sections.band_px > 0 && !options.sections.as_stored)
       if (std::optional<TrueGrid> grid = find_true_grid(changed ? *changed : given, options.threads)) {
-        out.warnings.push_back(true_grid_warning((changed ? *changed : given).spacing_mm, grid->volume.spacing_mm));
+        out.warnings.push_back({WarningCode::coarser_grid, "", true_grid_warning((changed ? *changed : given).spacing_mm, grid->volume.spacing_mm)});
         changed = std::move(grid->volume);
       }
     const LabelVolume& volume = changed ? *changed : given;
@@ -178,7 +179,7 @@ LabelMesh mesh_contours(const std::vector<LabelContours>& contours, const MeshOp
   ContourStackOptions how = drawn;
   how.caps = options.stitch.caps;
   how.label_caps = options.stitch.label_caps;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Stack stack = sections_from_contours(contours, warnings, how);
   LabelMesh out = mesh_sections(std::move(stack), options, monitor);
   out.warnings.insert(out.warnings.begin(), warnings.begin(), warnings.end());

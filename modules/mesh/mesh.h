@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/monitor.h"
 #include "base/stage_time.h"
+#include "base/warning.h"
 #include "enhance/enhance.h"
 #include "mesh/keep_pieces.h"
 #include "model/complex.h"
@@ -61,7 +62,8 @@ struct Refusal {
   std::vector<std::int32_t> triangles;  ///< of `surface`, where it fails; ascending
 };
 
-/// Labels as a checked surface and, for Target::volume, as tetrahedra. Coordinates are LPS, mm; of labels without anatomical axes, in the axes they came in.
+/// Labels as a checked surface and, for Target::volume, as tetrahedra. Surface and tetrahedra lie in Space::lps; of labels without anatomical axes in
+/// Space::none, the axes they came in.
 struct LabelMesh {
   std::vector<LabelInfo> labels;         ///< of the input, ascending, without the background
   InterfaceComplex surface;              ///< all interfaces between labels, closed and free of intersections
@@ -89,7 +91,7 @@ struct LabelMesh {
   std::vector<Label> behind;             ///< with voids: per face of `tets` as filled, the void on its open side, 0 where there is none
   std::vector<LayerFigures> layers;      ///< what came of MeshOptions::layers, places in the coordinates of the mesh
   std::string lost_detail;               ///< what a strict caller does not accept: a fallback; "": nothing
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   std::vector<StageTime> stages;
 };
 

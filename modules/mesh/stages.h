@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stage_clock.h"
+#include "base/warning.h"
 #include "mesh/judge.h"
 #include "mesh/mesh.h"
 #include "mesh/voids.h"
@@ -19,7 +20,7 @@ struct Call {
   const MeshOptions& options;
   Monitor& monitor;
   StageClock& clock;
-  std::vector<std::string>& warnings;
+  std::vector<Warning>& warnings;
 };
 
 /// Sections, and what is known of the labels that they were made of.

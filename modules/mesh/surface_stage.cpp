@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/warning.h"
 #include "mesh/stages.h"
 #include "sections/drawn_detail.h"
 #include "sections/far_sections.h"
@@ -28,13 +29,13 @@ void refuse_too_fine(const InterfaceComplex& surface, const MeshOptions& o) {
 bool is_too_large(const StitchedStage& stitched, const Call& call) {
   const MeshOptions& o = call.options;
   if (!stitched.far_apart.empty() && o.enhance_up_to) {
-    call.warnings.push_back(stitched.far_apart + ": the surface is kept as stitched; look at spacing and heights");
+    call.warnings.push_back({WarningCode::not_enhanced, "", stitched.far_apart + ": the surface is kept as stitched; look at spacing and heights"});
     return true;
   }
   if (!o.enhance_up_to || stitched.complex.triangles.size() <= *o.enhance_up_to) return false;
-  call.warnings.push_back("the stitched surface has " + std::to_string(stitched.complex.triangles.size()) +
+  call.warnings.push_back({WarningCode::not_enhanced, "", "the stitched surface has " + std::to_string(stitched.complex.triangles.size()) +
                           " triangles, more than are enhanced by default (it would take minutes): it is kept as stitched; ask for enhancement with --edge-length "
-                          "or --deviation, or reduce it with --interpolate or --simplify");
+                          "or --deviation, or reduce it with --interpolate or --simplify"});
   return true;
 }
 
@@ -58,12 +59,12 @@ bool accepts(const Judgement& enhanced, const SurfaceCheck& before) {
   return enhanced.is_sound() && enhanced.check.labels.size() == before.labels.size();
 }
 
-void warn_of_changes(const SurfaceCheck& before, const SurfaceCheck& after, std::vector<std::string>& warnings) {
+void warn_of_changes(const SurfaceCheck& before, const SurfaceCheck& after, std::vector<Warning>& warnings) {
   for (const LabelSurface& b : before.labels)
     for (const LabelSurface& a : after.labels)
       if (a.label == b.label && (a.euler != b.euler || a.components != b.components))
-        warnings.push_back("label " + std::to_string(a.label) + ": enhancement changed its Euler number from " + std::to_string(b.euler) + " to " + std::to_string(a.euler) +
-                           " and its pieces from " + std::to_string(b.components) + " to " + std::to_string(a.components));
+        warnings.push_back(warning_at(WarningCode::topology_changed, "label " + std::to_string(a.label), "enhancement changed its Euler number from " + std::to_string(b.euler) + " to " + std::to_string(a.euler) +
+                           " and its pieces from " + std::to_string(b.components) + " to " + std::to_string(a.components)));
 }
 
 /// A surface is checked beside the stage that goes on with it, whose result counts only after the check.
@@ -115,7 +116,7 @@ SurfaceStage enhance(StitchedStage stitched, const Call& call) {
     return out;
   }
   if (error) std::rethrow_exception(error);
-  for (const std::string& w : result.warnings) call.warnings.push_back(w);
+  for (const Warning& w : result.warnings) call.warnings.push_back(w);
   out.complex = std::move(result.complex);
   out.level = result.level;
 
@@ -124,8 +125,8 @@ SurfaceStage enhance(StitchedStage stitched, const Call& call) {
   if (fills) call.clock.run("volume", [&] { error = error_of([&] { fill_stage(out, call, &unsound); }); });
   Judgement enhanced = beside.finish();
   if (!accepts(enhanced, out.stitched_check)) {
-    call.warnings.push_back("the enhanced surface did not pass the exact checks (" + std::to_string(enhanced.check.open_edges) + " open edges, " +
-                            std::to_string(enhanced.check.self_intersections) + " self-intersections): the stitched surface is used");
+    call.warnings.push_back({WarningCode::not_enhanced, "", "the enhanced surface did not pass the exact checks (" + std::to_string(enhanced.check.open_edges) + " open edges, " +
+                            std::to_string(enhanced.check.self_intersections) + " self-intersections): the stitched surface is used"});
     out.complex = std::move(stitched.complex);
     out.level = SurfaceLevel::stitched;
     out.filled.reset();
@@ -146,7 +147,7 @@ StitchedStage stitch_stage(SectionStage sections, LabelMesh& out, const Call& ca
   options.threads = call.options.threads;
   StitchedStage s;
   StitchResult result = stitch_sections(std::move(sections.stack), options, call.monitor);
-  for (const std::string& w : result.warnings) call.warnings.push_back(w);
+  for (const Warning& w : result.warnings) call.warnings.push_back(w);
   s.complex = std::move(result.complex);
   s.faired = std::move(sections.faired);
   s.volume_mm3 = std::move(sections.volume_mm3);

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "base/warning.h"
 #include "mesh/layers.h"
 #include "mesh/stages.h"
 #include "volume/raise_order.h"
@@ -39,11 +40,11 @@ void follow_moved(SurfaceStage& surface, const TetMesh& mesh, const std::vector<
 }
 
 /// Puts the layers over the filled core.
-void take_layers(TetStage& out, LayerPlan& plan, const Frame& frame, std::vector<std::string>& warnings) {
+void take_layers(TetStage& out, LayerPlan& plan, const Frame& frame, std::vector<Warning>& warnings) {
   add_layers(*out.mesh, plan);
   for (LayerFigures& f : plan.figures) {
     for (LayerPlace& p : f.places) p.at_mm = frame.to_world(p.at_mm);
-    if (const std::string text = layer_warning(f); !text.empty()) warnings.push_back(text);
+    if (const std::string text = layer_warning(f); !text.empty()) warnings.push_back({WarningCode::layers, "label " + std::to_string(f.label), text});
     out.layers.push_back(std::move(f));
   }
 }
@@ -85,8 +86,8 @@ TetStage tet_stage(SurfaceStage& surface, const Frame& frame, const Call& call) 
   TetStage out;
   FillResult result = std::move(*surface.filled);
   surface.filled.reset();
-  for (const std::string& w : result.warnings) call.warnings.push_back(w);
-  if (!result.fallback.empty()) call.warnings.push_back("the volume mesher fell back: " + result.fallback + "; then " + result.message);
+  for (const Warning& w : result.warnings) call.warnings.push_back(w);
+  if (!result.fallback.empty()) call.warnings.push_back({WarningCode::mesher, "", "the volume mesher fell back: " + result.fallback + "; then " + result.message});
   if (result.status != FillResult::Status::verified) {
     out.closure = Closure::failed;
     Refusal no{"the volume mesher did not fill the surface (" + result.message + ")", "", std::move(result.offending_triangles)};

@@ -7,6 +7,7 @@ namespace stackmesh {
 Hollowed hollowed(const InterfaceComplex& complex, const std::set<Label>& voids) {
   Hollowed out;
   out.complex.points = complex.points;
+  out.complex.space = complex.space;
   for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
     InterfaceTriangle t = complex.triangles[i];
     Label behind = 0;

@@ -13,9 +13,7 @@ namespace {
 
 using Pair = std::pair<Label, Label>;
 
-std::string space_name(WorldSpace space) {
-  return space == WorldSpace::lps ? "LPS" : space == WorldSpace::ras ? "RAS" : "";
-}
+std::string space_name(Space space) { return space == Space::lps ? "LPS" : space == Space::ras ? "RAS" : ""; }
 
 /// A stable order by key: `order` lists the items, `begins` the first of each key (and the end).
 template <class Key>
@@ -187,15 +185,15 @@ std::set<Label> labels_of(const std::vector<InterfaceTriangle>& triangles) {
   return labels;
 }
 
-PreparedMesh prepare_triangles(std::vector<InterfaceTriangle> triangles, const std::vector<Vec3>& points,
+PreparedMesh prepare_triangles(std::vector<InterfaceTriangle> triangles, const InterfaceComplex& surface,
                                const MeshWriteOptions& options, const std::string& path) {
   if (triangles.empty())
     throw Error(ErrorKind::no_result, "the surface is empty", path, "check the labels that were requested");
   PreparedMesh mesh;
-  mesh.space = space_name(options.space);
+  mesh.space = space_name(surface.space);
   const LabelNames names(options.labels, labels_of(triangles));
   group_triangles(std::move(triangles), names, mesh);
-  take_points(points, path, mesh);
+  take_points(surface.points, path, mesh);
   return mesh;
 }
 
@@ -206,7 +204,7 @@ PreparedMesh prepare_surface(const InterfaceComplex& surface, const MeshWriteOpt
   std::vector<InterfaceTriangle> triangles = surface.triangles;
   for (InterfaceTriangle& t : triangles)
     if (wants_flip(t)) flip(t);
-  return prepare_triangles(std::move(triangles), surface.points, options, path);
+  return prepare_triangles(std::move(triangles), surface, options, path);
 }
 
 PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
@@ -217,7 +215,7 @@ PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
     if (t.above == label) flip(t);
     triangles.push_back(t);
   }
-  return prepare_triangles(std::move(triangles), surface.points, options, path);
+  return prepare_triangles(std::move(triangles), surface, options, path);
 }
 
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path) {
@@ -229,7 +227,7 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
                       std::to_string(mesh.labels.size()) + " labels",
                   path);
   PreparedMesh prepared;
-  prepared.space = space_name(options.space);
+  prepared.space = space_name(mesh.space);
   const Grouping<Label> groups(mesh.tets.size(), [&](std::size_t i) { return mesh.labels[i]; });
   const bool some = (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size()) || (!mesh.wedge_mid.empty() && mesh.wedge_mid.size() != mesh.wedges.size());
   if (some || (!mesh.tets.empty() && !mesh.wedges.empty() && mesh.mid.empty() != mesh.wedge_mid.empty()))

@@ -38,7 +38,7 @@ struct MeshFile {
   LabelSource label_source = LabelSource::none;
   std::string label_array;                ///< name of the array the labels were read from, "" for none
   bool numbers_from_names = false;        ///< of sets: some number was only counted up; the name is what counts
-  std::optional<WorldSpace> space;        ///< the frame that the file says it is in
+  std::optional<Space> space;             ///< the frame that the file says it is in
   std::size_t merged_points = 0;          ///< exactly equal points that were made one (surfaces only)
   std::size_t dropped_triangles = 0;      ///< triangles that name a point twice (they bound nothing)
   std::vector<std::string> notes;         ///< what was converted or left out, for a report

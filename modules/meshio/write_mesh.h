@@ -10,12 +10,7 @@
 
 namespace stackmesh {
 
-/// The frame that the coordinates are already in; it becomes a mark in the file (SPACE=LPS) and changes no
-/// number.
-enum class WorldSpace { lps, ras, none };  // none: no anatomy is known, the file carries no mark
-
 struct MeshWriteOptions {
-  WorldSpace space = WorldSpace::lps;
   bool per_label = false;         ///< surfaces: NAME_<label>.EXT for each label, closed on its own, outward
   bool msh2 = false;              ///< .msh as Gmsh 2.2 instead of 4.1
   std::vector<LabelInfo> labels;  ///< names for sets and physical groups; a label without one is label_<n>
@@ -33,7 +28,8 @@ std::string volume_endings();
 /// Each interface stands in the file once. Its normal points from the label to the background, or from the
 /// smaller label to the larger one; label_below and label_above of .ply and .vtp follow that winding. With
 /// per_label the normal points out of the file's label, which is label_below. Triangles come grouped by label
-/// pair; points that no triangle uses are left out. The caller commits `files`.
+/// pair; points that no triangle uses are left out. The space of what is written, where it is LPS or RAS, becomes a mark in the
+/// file (SPACE=LPS). The caller commits `files`.
 /// @throws Error(usage) for another ending, Error(output) when the file cannot be written, Error(no_result)
 /// when there is no triangle, Error(internal) for an index out of range or a coordinate that is not finite.
 void write_surface(AtomicFiles& files, const std::string& path, const InterfaceComplex& surface,

@@ -16,8 +16,9 @@ struct InterfaceTriangle {
 /// The interfaces of all labels as one triangle soup with shared vertices: conforming at junctions by
 /// construction. A label's closed surface is the set of its triangles, those with `above` == label reversed.
 struct InterfaceComplex {
-  std::vector<Vec3> points;  ///< mm, in stack coordinates until the pipeline maps them to the world
+  std::vector<Vec3> points;  ///< mm
   std::vector<InterfaceTriangle> triangles;
+  Space space = Space::stack;  ///< of the points; model/space.h brings them to another
 };
 
 /// How far a surface has come: as stitched, smoothed, or smoothed and remeshed.

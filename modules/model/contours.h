@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/geometry.h"
 
 namespace stackmesh {
@@ -28,7 +29,7 @@ struct LabelContours {
   std::string name;
   std::optional<std::array<std::uint8_t, 3>> colour = std::nullopt;  ///< red, green, blue
   std::vector<ContourSection> sections;  ///< ascending z
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 }  // namespace stackmesh

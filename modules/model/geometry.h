@@ -22,12 +22,23 @@ inline Vec3 cross(Vec3 a, Vec3 b) {
 }
 inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 
+/// What coordinates count from; all are mm. One world frame turns into another by change_space() (model/space.h).
+enum class Space {
+  stack,  ///< x, y in the plane, z along the stacking axis
+  lps,    ///< the world: to the patient's left, posterior and superior
+  ras,    ///< the world: right, anterior, superior
+  none    ///< the axes that the input came in: no anatomy is known
+};
+
+/// As reports and options write it.
+inline const char* to_text(Space space) { return space == Space::stack ? "stack" : space == Space::lps ? "lps" : space == Space::ras ? "ras" : "none"; }
+
 /// A rigid (possibly mirroring) map p -> origin + x * axes[0] + y * axes[1] + z * axes[2]; the axes are
-/// orthonormal. It takes stack coordinates (in-plane x, y; stacking axis z; mm) to the world frame, LPS
-/// unless the user requested RAS.
+/// orthonormal. It takes stack coordinates (in-plane x, y; stacking axis z; mm) to the world.
 struct Frame {
   Vec3 origin;
   std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  Space world = Space::lps;  ///< where it leads: LPS, or the input's own axes where no anatomy is known
 
   Vec3 to_world(Vec3 p) const { return origin + (p.x * axes[0] + p.y * axes[1] + p.z * axes[2]); }
   Vec3 to_stack(Vec3 p) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/geometry.h"
 
 namespace stackmesh {
@@ -29,11 +30,12 @@ struct LabelVolume {
   std::vector<std::uint16_t> voxels;                ///< size[0] * size[1] * size[2]
   std::vector<LabelInfo> labels;                    ///< labels[0] is {0, ""}
   std::string kind;                                 ///< "nifti", "nrrd", "seg.nrrd", "metaimage", "gipl", "slices", "masks", "dicom", "dicomseg"
-  std::vector<std::string> warnings;                ///< what reading found odd but could mend
+  std::vector<Warning> warnings;                ///< what reading found odd but could mend
 
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
   }
+  Space space() const { return anatomical ? Space::lps : Space::none; }  ///< of world()
   double voxel_volume_mm3() const { return spacing_mm[0] * spacing_mm[1] * spacing_mm[2]; }
   /// World position (LPS, mm) of a continuous voxel index.
   Vec3 world(double i, double j, double k) const {

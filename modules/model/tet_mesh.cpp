@@ -24,6 +24,7 @@ TetMesh with_tets_only(const TetMesh& mesh) {
   out.points = mesh.points;
   out.tets = mesh.tets;
   out.faces = mesh.faces;
+  out.space = mesh.space;
   out.labels.assign(mesh.labels.begin(), mesh.labels.begin() + static_cast<std::ptrdiff_t>(mesh.tets.size()));
   for (std::size_t i = 0; i < mesh.wedges.size(); ++i)
     for (const auto& tet : tets_of_wedge(mesh.wedges[i])) {

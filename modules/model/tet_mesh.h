@@ -29,6 +29,7 @@ struct TetMesh {
   /// 0 3 4 1: a layer ends in them.
   std::vector<std::array<std::int32_t, 6>> wedges = {};
   std::vector<std::array<std::int32_t, 9>> wedge_mid = {};  ///< second order: the point on each edge, kWedgeEdges (of a pyramid the last is its corner 2)
+  Space space = Space::stack;                               ///< of the points; model/space.h brings them to another
 
   std::size_t elements() const { return tets.size() + wedges.size(); }
   bool is_wedge(std::size_t element) const { return element >= tets.size(); }

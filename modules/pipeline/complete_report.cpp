@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/cancel.h"
+#include "base/warning.h"
 #include "validate/boundaries.h"
 #include "validate/check_bends.h"
 #include "validate/check_thickness.h"
@@ -102,7 +103,7 @@ void add_loose_pieces(RunReport& report, const InterfaceComplex& surface, const 
     std::snprintf(text, sizeof text, "Label %d has a piece of its own of %.3g mm3 at (%.2f, %.2f, %.2f) mm, from (%.1f, %.1f, %.1f) to (%.1f, %.1f, %.1f), that the sections do not imply.",
                   static_cast<int>(t.label), pieces.piece_volume_mm3[piece], d.where.x, d.where.y, d.where.z, low.x, low.y, low.z, high.x, high.y, high.z);
     d.text = text;
-    report.warnings.push_back("label" + d.text.substr(5, d.text.size() - 6) + "; --min-piece or --keep-largest leaves it out");
+    report.warnings.push_back({WarningCode::piece_not_implied, "label " + std::to_string(t.label), "label" + d.text.substr(5, d.text.size() - 6) + "; --min-piece or --keep-largest leaves it out"});
     report.defects.push_back(std::move(d));
   }
 }

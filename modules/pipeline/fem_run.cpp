@@ -9,6 +9,7 @@
 
 #include "base/cancel.h"
 #include "base/error.h"
+#include "base/warning.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/element_quality.h"
@@ -17,6 +18,7 @@
 #include "fem/solver_names.h"
 #include "image/read_label_table.h"
 #include "model/label_table.h"
+#include "model/space.h"
 #include "fem/load_case.h"
 #include "fem/recover_stress.h"
 #include "fem/selection.h"
@@ -111,8 +113,7 @@ class FemRun {
     check_labels(product.labels);
     clock.run("validate", [&] { check(product, report); });
     const std::vector<Label> behind = voids_behind(product.mesh.faces);
-    if (product.space == WorldSpace::ras)  // it was read and judged in LPS
-      to_ras(product.mesh.points);
+    change_space(product.mesh, written_);  // it was read and judged in LPS
     if (o_.mesh.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.mesh.threads;
@@ -142,12 +143,11 @@ class FemRun {
   }
 
   HtmlPictures draw(const MeshProduct& product, const RunReport& report) const {
-    const InterfaceComplex surface = {product.mesh.points, product.mesh.faces};
+    const InterfaceComplex surface = {product.mesh.points, product.mesh.faces, product.mesh.space};
     HtmlScene scene;
     scene.surface = &surface;
     scene.mesh = &product.mesh;
     scene.values = &report.fem->faces;
-    scene.space = product.space == WorldSpace::none ? "none" : o_.mesh.space;
     HtmlOptions options;
     options.threads = o_.mesh.mesh.threads;
     return draw_pictures(scene, options);
@@ -168,19 +168,17 @@ class FemRun {
     if (file.tets.empty()) fail_input("the mesh has no tetrahedra", path, "give a volume mesh, or labels");
     report.input.path = path;
     report.input.kind = "mesh";
-    report.input.space = o_.mesh.space;
-    for (const std::string& note : file.notes) report.warnings.push_back(note);
+    for (const std::string& note : file.notes) report.warnings.push_back({WarningCode::mesh_converted, path, note});
     if (file.label_source == LabelSource::none)
-      report.warnings.push_back(path + ": no cell array holds labels: every element has label 1 (name an array with --label-array)");
-    if (!file.space) report.warnings.push_back(path + ": does not say its frame; it is taken as LPS");
+      report.warnings.push_back(warning_at(WarningCode::labels_matched, path, "no cell array holds labels: every element has label 1 (name an array with --label-array)"));
+    if (!file.space) report.warnings.push_back(warning_at(WarningCode::frame, path, "does not say its frame; it is taken as LPS"));
     MeshProduct product;
-    product.space = o_.mesh.space == "ras" ? WorldSpace::ras : WorldSpace::lps;
+    product.mesh.space = file.space.value_or(Space::lps);
+    written_ = product.mesh.space == Space::none ? Space::none : o_.mesh.space == "ras" ? Space::ras : Space::lps;
+    report.input.space = to_text(written_);
     product.up = o_.up;
-    if (file.space && *file.space == WorldSpace::none) product.space = WorldSpace::none;
-    if (file.space && *file.space == WorldSpace::ras)
-      to_ras(file.points);  // and back again
-    if (product.space == WorldSpace::none) report.input.space = "none";
     product.mesh.points = std::move(file.points);
+    if (product.mesh.space == Space::ras) change_space(product.mesh, Space::lps);  // and back again
     product.mesh.tets = std::move(file.tets);
     product.mesh.mid = std::move(file.midside);
     product.mesh.wedges = std::move(file.wedges);
@@ -248,7 +246,7 @@ class FemRun {
     if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
       mesh.mid.clear();
       mesh.wedge_mid.clear();
-      report.warnings.push_back("the mesh is of second order: its mid-side nodes are left out (--order 1)");
+      report.warnings.push_back({WarningCode::element_order, "", "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
     }
     add_label_rows(report, product.labels);
     // A mesh whose parts have nodes of their own is judged as one body.
@@ -256,9 +254,9 @@ class FemRun {
     if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {
       const std::string text = std::to_string(twins) + " nodes lie exactly on another one";
       if (o_.parts.empty()) {
-        report.warnings.push_back(text + " and stay apart from it; --parts makes contact or ties of such faces");
+        report.warnings.push_back({WarningCode::coincident_nodes, "", text + " and stay apart from it; --parts makes contact or ties of such faces"});
       } else {
-        report.warnings.push_back(text + ": they were joined to it before --parts");
+        report.warnings.push_back({WarningCode::coincident_nodes, "", text + ": they were joined to it before --parts"});
         mesh = whole;
         walls_.clear();  // they name the nodes before
       }
@@ -267,7 +265,7 @@ class FemRun {
     whole.faces = faces_of_tets(whole);
     judge(whole, report);
     if (!report.volume->conforms)
-      report.warnings.push_back("the mesh does not conform: faces or edges of its tetrahedra do not match");
+      report.warnings.push_back({WarningCode::not_conforming, "", "the mesh does not conform: faces or edges of its tetrahedra do not match"});
   }
 
   /// Its surface only for a report.
@@ -276,7 +274,7 @@ class FemRun {
       report.volume = check_volume(mesh, {o_.mesh.mesh.threads});
       return;
     }
-    const InterfaceComplex surface = {mesh.points, mesh.faces};
+    const InterfaceComplex surface = {mesh.points, mesh.faces, mesh.space};
     check_mesh(report, surface, &mesh, o_.mesh.mesh.threads);
     Judged judged;
     judged.surface = &surface;
@@ -290,7 +288,7 @@ class FemRun {
   struct Built {
     SolverModel model;
     MaterialReport materials;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
   };
 
   void model(MeshProduct product, RunReport& report, AtomicFiles& files) {
@@ -299,17 +297,16 @@ class FemRun {
     if (o_.accuracy_rel) accuracy = refine_until_accurate(product, built);
     product.mesh = TetMesh();
     const SolverModel& model = built.model;
-    for (const std::string& w : built.warnings) report.warnings.push_back(w);
+    for (const Warning& w : built.warnings) report.warnings.push_back(w);
     report.fem = summary(model, built.materials);
     if (asks_for_html(o_.mesh.reports)) report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
     report.fem->accuracy = std::move(accuracy);
-    if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back(not_reached(*report.fem->accuracy));
+    if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back({WarningCode::accuracy, "", not_reached(*report.fem->accuracy)});
 
     MeshWriteOptions write = o_.mesh.write;
-    write.space = product.space;
     for (const std::string& path : o_.mesh.outputs) {
       if (!is_volume_format(path)) continue;
-      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back(loss);
+      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back({WarningCode::format_loss, path, loss});
       write_model(files, path, model, write);
     }
   }
@@ -357,7 +354,6 @@ class FemRun {
       const LoadStep step = *std::find_if(first.sets.steps.begin(), first.sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
       first.sets.steps = {step};
       MeshWriteOptions write = o_.mesh.write;
-      write.space = product.space;
       const auto begin = std::chrono::steady_clock::now();
       const std::vector<Vec3> moved = solve_with_calculix(first, write, o_.mesh.mesh.threads, o_.mesh.mesh.fill.timeout_s);
       out.solve_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -376,13 +372,11 @@ class FemRun {
 
   Built build(const MeshProduct& product) const {
     Built out;
-    const bool ras = product.space == WorldSpace::ras;
     SetOptions sets;
     sets.up = product.up;
     sets.image = product.image;
     sets.sharp_deg = o_.sharp_deg;
     sets.selections = o_.selections;
-    sets.ras = ras;
     sets.times_cut = o_.mesh.mesh.refine + times_cut_;
     const LabelTable known(product.labels);
     for (const auto& [name, text] : o_.parts) sets.parts.push_back({name, known.numbers(text)});
@@ -392,15 +386,13 @@ class FemRun {
     SolverModel& model = out.model;
 
     if (image_) {
-      for (const std::string& w : image_->warnings) out.warnings.push_back(w);
-      if (product.space == WorldSpace::none)
+      for (const Warning& w : image_->warnings) out.warnings.push_back(w);
+      if (product.mesh.space == Space::none)
         fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
     }
-    MaterialOptions how;
-    how.ras = ras;
-    out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr, how);
-    for (const std::string& w : out.materials.warnings) out.warnings.push_back(w);
-    if (!plan_) out.warnings.push_back("no --materials: decks that need materials carry placeholders (E = 1 MPa)");
+    out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr);
+    for (const Warning& w : out.materials.warnings) out.warnings.push_back(w);
+    if (!plan_) out.warnings.push_back({WarningCode::materials, "", "no --materials: decks that need materials carry placeholders (E = 1 MPa)"});
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
     if (plan_) apply_load_case(model, plan_->load_case, o_.materials);
     JoinOptions join;
@@ -410,8 +402,8 @@ class FemRun {
     join_parts(model, join);
     check_supports(model, o_.materials);
     if (model.mesh.mid.empty() && !model.sets.steps.empty())
-      out.warnings.push_back("linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
-                                "take --order 2 for figures that are to be relied on");
+      out.warnings.push_back({WarningCode::element_order, "", "linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
+                                "take --order 2 for figures that are to be relied on"});
     return out;
   }
 
@@ -476,6 +468,7 @@ class FemRun {
   int times_cut_ = 0;  // by --accuracy, beyond --refine
   std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
   std::vector<LabelInfo> voids_;                        // that the mesh names
+  Space written_ = Space::lps;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "fair/true_grid.h"
 #include "image/dicom_series.h"
 #include "image/read_contours.h"
@@ -170,6 +171,7 @@ Input read_input(const InputOptions& asked) {
   else read_volume(options, input);
   if (!input.volume) {
     input.labels = labels_of(input.contours);
+    input.drawn.frame.world = input.anatomical ? Space::lps : Space::none;
     choose_caps(options, input);
   }
   if (!options.names.empty() && !input.volume) apply_label_table(read_label_table(options.names), input.labels);
@@ -219,7 +221,7 @@ std::array<double, 3> reduce_to_true_grid(Input& input, int threads) {
   std::optional<TrueGrid> grid = find_true_grid(*input.volume, threads);
   if (!grid) return stored;
   const std::array<double, 3> made = grid->volume.spacing_mm;
-  input.warnings.push_back(true_grid_warning(stored, made));
+  input.warnings.push_back({WarningCode::coarser_grid, "", true_grid_warning(stored, made)});
   input.volume = std::move(grid->volume);
   return made;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/contours.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
@@ -41,7 +42,7 @@ struct Input {
   std::string path, kind;
   std::vector<LabelInfo> labels;  ///< without the background
   std::set<Label> voids;          ///< those of them that are not filled
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Reads the input and keeps the labels that were requested. @throws Error(input), Error(usage)

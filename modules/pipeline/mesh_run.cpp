@@ -8,8 +8,10 @@
 #include "base/memory.h"
 #include "base/stage_clock.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "mesh/voids.h"
 #include "model/label_table.h"
+#include "model/space.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
@@ -41,7 +43,7 @@ class MeshRun {
     if (valid && model_ && mesh_.tets) clock_.run("write", [&] { make_model(); });
     clock_.run("write", [&] {
       if (valid) write();
-      if (asks_for_html(o_.reports)) draw(valid);
+      if (asks_for_html(o_.reports)) draw();
     });
     report_.peak_rss_mb = peak_memory_mb();
     write_reports();
@@ -53,7 +55,7 @@ class MeshRun {
   }
 
  private:
-  void warn(const std::string& text) { report_.warnings.push_back(text); }
+  void warn(Warning w) { report_.warnings.push_back(std::move(w)); }
 
   void read() {
     InputOptions input = o_.input;
@@ -69,8 +71,8 @@ class MeshRun {
     const bool anatomical = input_.anatomical;
     if (o_.space == "ras" && !anatomical)
       fail_usage("--space ras needs an input with anatomical axes", input_.path, "leave --space out: coordinates are kept as they are");
-    world_ = anatomical ? (o_.space == "ras" ? WorldSpace::ras : WorldSpace::lps) : WorldSpace::none;
-    report_.input.space = anatomical ? o_.space : "none";
+    written_ = !anatomical ? Space::none : o_.space == "ras" ? Space::ras : Space::lps;
+    report_.input.space = to_text(written_);
     add_label_rows(report_, input_.labels);
     for (LabelReport& row : report_.labels) row.is_void = input_.voids.count(row.label) > 0;
     if (!input_.volume) return;
@@ -121,8 +123,8 @@ class MeshRun {
   }
 
   void take_figures() {
-    for (const std::string& w : input_.warnings) warn(w);
-    for (const std::string& w : mesh_.warnings) warn(w);
+    for (const Warning& w : input_.warnings) warn(w);
+    for (const Warning& w : mesh_.warnings) warn(w);
     for (const StageTime& t : mesh_.stages) add_stage_time(report_.stages, t);
     lost_detail_ = mesh_.lost_detail;
     report_.input.axis = std::string(1, "xyz"[mesh_.contours.axis]);
@@ -157,7 +159,7 @@ class MeshRun {
     if (wants_fidelity() && labels() != nullptr) judge_fidelity();
     fill_label_rows(report_, fidelity_.empty() ? nullptr : &fidelity_);
     for (const LabelReport& row : report_.labels)
-      if (!row.closed) warn("label " + std::to_string(row.label) + " has no closed surface");
+      if (!row.closed) warn({WarningCode::not_closed, "label " + std::to_string(row.label), "label " + std::to_string(row.label) + " has no closed surface"});
     if (!o_.reports.empty() || o_.full_report) give_verdicts();
   }
 
@@ -181,30 +183,30 @@ class MeshRun {
     fidelity_ = check_fidelity(mesh_.surface, *labels(), options);
     for (const LabelFidelity& f : fidelity_)
       if (f.missing_components > 0)
-        lost("label " + std::to_string(f.label) + ": " + std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) + " components are missing");
+        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label), std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) + " components are missing"));
       else if (!f.components_match)
-        lost("label " + std::to_string(f.label) + ": the surface's pieces do not match the input's components one to one");
+        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label), "the surface's pieces do not match the input's components one to one"));
   }
 
-  void lost(const std::string& text) {
-    warn(text);
-    lost_detail_ = lost_detail_.empty() ? text : lost_detail_;
+  void lost(const Warning& w) {
+    warn(w);
+    lost_detail_ = lost_detail_.empty() ? w.text : lost_detail_;
   }
 
   void write_offending(const Refusal& refusal) {
     if (refusal.triangles.empty() || (o_.outputs.empty() && o_.reports.empty())) return;
     InterfaceComplex part;
     part.points = mesh_.surface.points;
+    part.space = mesh_.surface.space;
     for (std::int32_t t : refusal.triangles) part.triangles.push_back(mesh_.surface.triangles[t]);
     const std::string base = o_.outputs.empty() ? o_.reports[0] : o_.outputs[0];
     const std::string path = base.substr(0, base.rfind('.')) + ".offending.vtp";
     write_surface(files_, path, part, write_options());
-    warn("the offending triangles are in " + path);
+    warn({WarningCode::file_written, path, "the offending triangles are in " + path});
   }
 
   MeshWriteOptions write_options() const {
     MeshWriteOptions w = o_.write;
-    w.space = world_;
     w.labels = input_.labels;
     return w;
   }
@@ -219,10 +221,8 @@ class MeshRun {
   }
 
   void write() {
-    if (world_ == WorldSpace::ras) {
-      to_ras(mesh_.surface.points);
-      if (mesh_.tets) to_ras(mesh_.tets->points);
-    }
+    change_space(mesh_.surface, written_);
+    if (mesh_.tets) change_space(*mesh_.tets, written_);
     if (mesh_.tets) name_voids(mesh_.tets->faces, mesh_.behind);
     if (!input_.voids.empty()) mesh_.surface = written_surface();
     for (const std::string& path : o_.outputs) {
@@ -231,7 +231,7 @@ class MeshRun {
         write_surface(files_, path, mesh_.surface, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);
       } else if (!model_) {
-        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty()) warn(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
+        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty()) warn(warning_at(WarningCode::format_loss, path, "the format has no pyramids; wedges and pyramids are divided into tetrahedra"));
         write_volume(files_, path, *mesh_.tets, write_options());
       }
     }
@@ -250,7 +250,7 @@ class MeshRun {
       mesh_.tets.reset();
     }
     name_voids(mesh.faces, mesh_.behind);
-    model_(mesh_product(std::move(mesh), input_.labels, world_, mesh_.frame.axes[2], labels()), report_, files_);
+    model_(mesh_product(std::move(mesh), input_.labels, written_, mesh_.frame.axes[2], labels()), report_, files_);
   }
 
   /// STL keeps 24 bits of a coordinate: what is written is checked again.
@@ -261,11 +261,11 @@ class MeshRun {
     check.threads = o_.mesh.threads;
     const SurfaceCheck s = check_surface(rounded, check);
     if (s.self_intersections > 0)
-      warn(path + ": rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
-           " pairs of triangles touch or cross; the other formats keep the checked surface");
+      warn(warning_at(WarningCode::format_loss, path, "rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
+           " pairs of triangles touch or cross; the other formats keep the checked surface"));
   }
 
-  void draw(bool written) {
+  void draw() {
     HtmlScene scene;
     scene.surface = &mesh_.surface;
     if (mesh_.tets) scene.mesh = &*mesh_.tets;
@@ -274,11 +274,10 @@ class MeshRun {
     scene.stack_axis = mesh_.contours.axis;
     InterfaceComplex of_model;  // corners of second-order tetrahedra lie beside the surface's
     if (report_.fem && mesh_.tets) {
-      of_model = {mesh_.tets->points, mesh_.tets->faces};
+      of_model = {mesh_.tets->points, mesh_.tets->faces, mesh_.tets->space};
       scene.surface = &of_model;
       scene.values = &report_.fem->faces;
     }
-    scene.space = world_ == WorldSpace::none ? "none" : world_ == WorldSpace::ras && written ? "ras" : "lps";
     HtmlOptions options;
     options.threads = o_.mesh.threads;
     pictures_ = draw_pictures(scene, options);
@@ -300,7 +299,7 @@ class MeshRun {
   Input input_;
   LabelMesh mesh_;
   HtmlPictures pictures_;
-  WorldSpace world_ = WorldSpace::lps;
+  Space written_ = Space::lps;
   std::vector<LabelFidelity> fidelity_;
   std::string lost_detail_;
 };

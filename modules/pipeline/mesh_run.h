@@ -31,7 +31,7 @@ struct MeshRunOptions {
   bool full_report = false;                       ///< fidelity and verdicts also where no report is written
   std::string command = "mesh", version;
   std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report
-  std::vector<std::string> notes;                 ///< warnings of the caller, for the report
+  std::vector<Warning> notes;                     ///< warnings of the caller, for the report
 };
 
 /// Takes the place of writing volume files: gets the mesh, adds to the report, writes to the files.
@@ -42,7 +42,7 @@ using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
 
 /// The mesh that a run has made, as it is written.
 struct MadeMesh {
-  InterfaceComplex surface;      ///< what write_surface() takes
+  InterfaceComplex surface;      ///< what write_surface() takes, in the space that was written
   std::optional<TetMesh> tets;   ///< what write_volume() takes
   MeshWriteOptions write;
   bool has_voids = false;        ///< then `surface` is what write.per_label asked for, and not the other form

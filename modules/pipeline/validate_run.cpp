@@ -10,6 +10,8 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "base/warning.h"
+#include "model/space.h"
 #include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/output_files.h"
@@ -75,7 +77,6 @@ class ValidateRun {
     if (against_ && against_->input.volume) scene.volume = selected_ ? &*selected_ : &*against_->input.volume;
     if (against_ && !against_->input.volume) scene.sections = &against_->sections;
     if (against_) scene.stack_axis = against_->axis;
-    scene.space = world_ == WorldSpace::lps ? "lps" : world_ == WorldSpace::ras ? "ras" : "none";
     HtmlOptions options;
     options.threads = o_.threads;
     options.labels = labels;
@@ -94,14 +95,12 @@ class ValidateRun {
     std::string folder = o_.defects_folder;
     if (folder.empty() && !o_.reports.empty() && o_.reports[0].rfind('/') != std::string::npos) folder = o_.reports[0].substr(0, o_.reports[0].rfind('/'));
     const std::string path = (folder.empty() ? "" : folder + "/") + name + ".defects.vtp";
-    MeshWriteOptions w;
-    w.space = world_;
-    write_surface(files, path, part, w);
-    report.warnings.push_back("the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1");
+    write_surface(files, path, part);
+    report.warnings.push_back({WarningCode::file_written, path, "the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1"});
   }
 
  private:
-  void warn(const std::string& text) { report_.warnings.push_back(text); }
+  void warn(Warning w) { report_.warnings.push_back(std::move(w)); }
 
   void read(const std::string& path) {
     file_ = read_mesh(path, o_.read);
@@ -112,7 +111,7 @@ class ValidateRun {
     m.order = file_.midside.empty() ? 1 : 2;
     if (!o_.reports.empty()) m.sha256 = sha256_of_file(path);
     report_.mesh = std::move(m);
-    for (const std::string& n : file_.notes) warn(n);
+    for (const std::string& n : file_.notes) warn({WarningCode::mesh_converted, file_.path, n});
     if (file_.tets.empty() && file_.wedges.empty()) {
       surface_.points = std::move(file_.points);
       surface_.triangles = std::move(file_.triangles);
@@ -129,16 +128,10 @@ class ValidateRun {
   }
 
   void turn_round() {
-    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_)) warn(note);
+    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_)) warn({WarningCode::mesh_converted, file_.path, note});
   }
 
   // ---- frame
-
-  static Frame turned() {  // half a revolution about z
-    Frame f;
-    f.axes = {Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}};
-    return f;
-  }
 
   void take_frame() {
     JudgedMesh& m = *report_.mesh;
@@ -148,18 +141,16 @@ class ValidateRun {
       take_image_frame(anatomical);
       return;
     }
-    m.space = known ? "lps" : "none";
-    world_ = known ? WorldSpace::lps : WorldSpace::none;
+    lies_in(known ? Space::lps : Space::none);
     if (against_ && !anatomical) {
       m.space_reason = "the input has no anatomy: coordinates are taken as they are";
       if (o_.mesh_space == "ras") fail_usage("--mesh-space ras needs an input with anatomical axes", against_->input.path, "leave --mesh-space out");
       if (against_->input.volume && overlap(Frame{}) == 0) no_overlap("as it is", {});
       return;
     }
-    const std::optional<WorldSpace> told = o_.mesh_space == "lps" ? std::optional(WorldSpace::lps) : o_.mesh_space == "ras" ? std::optional(WorldSpace::ras) : file_.space;
+    const std::optional<Space> told = o_.mesh_space == "lps" ? std::optional(Space::lps) : o_.mesh_space == "ras" ? std::optional(Space::ras) : file_.space;
     if (!against_) {
-      m.space = told == WorldSpace::ras ? "ras" : told == WorldSpace::lps ? "lps" : "none";
-      world_ = told.value_or(WorldSpace::none);
+      lies_in(told.value_or(Space::none));
       m.space_reason = o_.mesh_space != "auto" ? "as told by --mesh-space" : told ? "the file says so" : "the file does not say, and there are no labels to compare with";
       return;
     }
@@ -169,12 +160,12 @@ class ValidateRun {
     }
     if (told) {
       const std::string who = o_.mesh_space != "auto" ? "--mesh-space tells" : "the file tells";
-      const bool is_ras = told == WorldSpace::ras;
-      const double dice = overlap(is_ras ? turned() : Frame{});
-      m.space = is_ras ? "ras" : "lps";
+      const bool is_ras = told == Space::ras;
+      const double dice = overlap(between(*told, Space::lps));
+      lies_in(*told);
       m.space_reason = who + " " + (is_ras ? "RAS" : "LPS") + " (Dice " + percent(dice) + ")";
       if (dice < 0.5) {
-        const double other = overlap(is_ras ? Frame{} : turned());
+        const double other = overlap(between(is_ras ? Space::lps : Space::ras, Space::lps));
         if (other > 0.5 && other > 2 * dice) {
           wrong_frame_ = "the mesh is taken as " + std::string(is_ras ? "RAS" : "LPS") + " because " + who + " so, but as " + (is_ras ? "LPS" : "RAS") +
                          " it would fit: Dice " + percent(other) + " instead of " + percent(dice);
@@ -182,25 +173,23 @@ class ValidateRun {
           no_overlap(is_ras ? "as RAS" : "as LPS", is_ras ? "LPS: " + percent(other) : "RAS: " + percent(other));
         }
       }
-      if (is_ras) to_lps();
+      to_lps();
       return;
     }
-    const double lps = overlap(Frame{}), ras = overlap(turned());
+    const double lps = overlap(Frame{}), ras = overlap(between(Space::ras, Space::lps));
     if (std::max(lps, ras) < 0.5 && take_mirror(std::max(lps, ras))) return;
     if (lps == 0 && ras == 0) no_overlap("neither as LPS nor as RAS", {});
-    const bool is_ras = ras > lps;
-    m.space = is_ras ? "ras" : "lps";
+    lies_in(ras > lps ? Space::ras : Space::lps);
     m.space_reason = "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
-    if (std::abs(lps - ras) < 0.05) warn("the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space");
-    if (is_ras) to_lps();
+    if (std::abs(lps - ras) < 0.05) warn({WarningCode::frame, file_.path, "the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space"});
+    to_lps();
   }
 
   /// Against drawn contours, which have no voxels to compare with.
-  void take_told_frame(const std::optional<WorldSpace>& told) {
-    const bool is_ras = told == WorldSpace::ras;
-    report_.mesh->space = is_ras ? "ras" : "lps";
-    report_.mesh->space_reason = !told ? "neither the mesh nor the contours say: taken as LPS" : std::string(o_.mesh_space != "auto" ? "--mesh-space tells " : "the file tells ") + (is_ras ? "RAS" : "LPS");
-    if (is_ras) to_lps();
+  void take_told_frame(const std::optional<Space>& told) {
+    lies_in(told.value_or(Space::lps));
+    report_.mesh->space_reason = !told ? "neither the mesh nor the contours say: taken as LPS" : std::string(o_.mesh_space != "auto" ? "--mesh-space tells " : "the file tells ") + (told == Space::ras ? "RAS" : "LPS");
+    to_lps();
   }
 
   /// Coordinates are indices times spacing, 0 the centre of the first voxel: they are moved to where the voxels lie.
@@ -209,14 +198,23 @@ class ValidateRun {
     for (std::vector<Vec3>* points : {&surface_.points, &tets_.points})
       for (Vec3& p : *points) p = against_->stored_frame.to_world(p);
     turn_round();  // axes may mirror
-    world_ = anatomical ? WorldSpace::lps : WorldSpace::none;
+    lies_in(anatomical ? Space::lps : Space::none);
     const double dice = overlap(Frame{});
-    report_.mesh->space = anatomical ? "lps" : "none";
     report_.mesh->space_reason = "moved from indices times spacing, as --mesh-space tells (Dice " + percent(dice) + ")";
     if (dice == 0) no_overlap("as indices times spacing", {});
   }
 
-  void to_lps() { scale(-1, -1, 1); }
+  /// The frame in which the mesh was written, as the report names it.
+  void lies_in(Space space) {
+    surface_.space = tets_.space = space;
+    report_.mesh->space = to_text(space);
+  }
+
+  /// Into the frame of the labels.
+  void to_lps() {
+    change_space(surface_, Space::lps);
+    change_space(tets_, Space::lps);
+  }
 
   void scale(double x, double y, double z) {
     for (std::vector<Vec3>* points : {&surface_.points, &tets_.points})
@@ -341,7 +339,7 @@ class ValidateRun {
       to[1] = labels_[best - 1].number;
       matched_ = ", it fits label " + std::to_string(to[1]) + " best (Dice " + percent(one) + "; all together " + percent(all) + ")";
     }
-    warn("the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ + "; --label tells which");
+    warn({WarningCode::labels_matched, file_.path, "the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ + "; --label tells which"});
     if (!union_) keep_only(to[1]);
   }
 
@@ -355,14 +353,14 @@ class ValidateRun {
     for (const Label l : of_mesh) to[l] = asked(l) ? l : 0;
     forget(unknown);
     if (of_mesh.size() == 1 && labels_.size() > 1) {
-      warn("the mesh has label " + list(of_mesh) + " alone: only that label is judged");
+      warn({WarningCode::labels_matched, file_.path, "the mesh has label " + list(of_mesh) + " alone: only that label is judged"});
       keep_only(*of_mesh.begin());
     }
   }
 
   /// Labels of the mesh that the input does not have, or that were not requested, are background.
   void forget(const std::set<Label>& unknown) {
-    if (!unknown.empty()) warn("labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown));
+    if (!unknown.empty()) warn({WarningCode::labels_matched, file_.path, "labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown)});
   }
 
   void by_name(const std::set<Label>& of_mesh, std::map<Label, Label>& to) {
@@ -400,7 +398,7 @@ class ValidateRun {
       to[o.mesh_labels[m]] = target;
       if (m < 12) text += (m ? ", " : "") + std::to_string(o.mesh_labels[m]) + " as " + std::to_string(target) + " (Dice " + percent(o.dice(m, best)) + ")";
     }
-    warn(why + ": its labels are taken for those that they overlap best: " + text);
+    warn({WarningCode::labels_matched, file_.path, why + ": its labels are taken for those that they overlap best: " + text});
     if (of_mesh.size() == 1 && labels_.size() > 1 && to.begin()->second != 0) keep_only(to.begin()->second);
   }
 
@@ -494,10 +492,9 @@ class ValidateRun {
   RunReport report_;
   StageClock clock_;
   MeshFile file_;
-  InterfaceComplex surface_;  // LPS once the frame is known
+  InterfaceComplex surface_;  // in the frame of the labels once it is known
   TetMesh tets_;
   bool has_faces_ = false, union_ = false, mirrored_ = false;
-  WorldSpace world_ = WorldSpace::lps;
   std::vector<LabelInfo> labels_;  // of the input that are judged
   std::optional<LabelVolume> selected_;  // those, where they are not all of the input's
   std::string matched_, wrong_frame_;

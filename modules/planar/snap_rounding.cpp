@@ -8,6 +8,7 @@
 #include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/warning.h"
 
 namespace stackmesh {
 namespace {
@@ -326,7 +327,7 @@ SnapRoundingReport snap_round(Stack& stack, int threads) {
   SnapRoundingReport report;
   for (std::size_t i = 0; i < n; ++i) {
     report.added_vertices += added[i];
-    if (!warnings[i].empty()) report.warnings.push_back(warnings[i]);
+    if (!warnings[i].empty()) report.warnings.push_back({WarningCode::vanished, "section " + std::to_string(i + 1), warnings[i]});
   }
   return report;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/stack.h"
 #include "model/edge_grid.h"
 
@@ -31,7 +32,7 @@ std::vector<NodedSegments> node_segments(const std::vector<std::vector<GridSegme
 /// What rounding changed in a stack.
 struct SnapRoundingReport {
   std::size_t added_vertices = 0;  ///< contour vertices that a neighbour or a crossing brought in
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Snap-rounds the stack's sections in place; edges that fall together are merged by composing their labels.

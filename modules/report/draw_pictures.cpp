@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "model/space.h"
 #include "report/display_mesh.h"
 #include "report/histograms.h"
 #include "report/html_report.h"
@@ -26,8 +27,6 @@ constexpr double kSliceShare = 0.15, kCutShare = 0.2, kSurfaceShare = 0.25, kTet
 constexpr double kTriangleBytes = 6.5, kTetBytes = 7.5;
 
 Json vec(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-Vec3 turned(const Vec3& v) { return {-v.x, -v.y, v.z}; }
 
 Frame frame_of(const LabelVolume& volume, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -85,13 +84,15 @@ class Pictures {
     histograms();
     places();
     HtmlPictures out;
-    out.space = scene_.space;
+    out.space = space();
     out.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (const Blob& b : blobs_) out.blobs.emplace_back(b.name(), base64(b.bytes()));
     return out;
   }
 
  private:
+  Space space() const { return scene_.surface->space; }
+
   /// The frame of the sections, and the heights of sections and mid-gaps.
   void place() {
     Frame lps;
@@ -110,13 +111,11 @@ class Pictures {
     }
     const bool of_box = heights.empty();
     if (of_box) heights = spread_heights();
-    if (of_box && scene_.space == "ras")  // the planes lie across the mesh's own axes
-      for (Vec3& a : lps.axes) a = turned(a);
+    if (of_box && space() == Space::ras)  // the planes lie across the mesh's own axes
+      for (Vec3& a : lps.axes) a = in_space(a, Space::ras, Space::lps);
     frame_ = lps;
-    if (scene_.space == "ras") {
-      frame_.origin = turned(lps.origin);
-      for (Vec3& a : frame_.axes) a = turned(a);
-    }
+    frame_.origin = in_space(lps.origin, Space::lps, space());
+    for (Vec3& a : frame_.axes) a = in_space(a, Space::lps, space());
     Json planes = Json::array();
     for (std::size_t k = 0; k < heights.size(); ++k) {
       if (k > 0 && !of_box) {
@@ -129,9 +128,9 @@ class Pictures {
     drawing_.unit_mm = std::min(pixel_[0], pixel_[1]) / 64;
     drawing_.tolerance_mm = 2 * drawing_.unit_mm;
     drawing_.threads = options_.threads;
-    json_["space"] = scene_.space;
+    json_["space"] = to_text(space());
     json_["frame"] = {{"origin", vec(frame_.origin)}, {"axes", {vec(frame_.axes[0]), vec(frame_.axes[1]), vec(frame_.axes[2])}}};
-    json_["orientation"] = orientation(lps, scene_.space != "none");
+    json_["orientation"] = orientation(lps, space() != Space::none);
     json_["pixel_mm"] = pixel_;
     json_["planes"] = planes;
     json_["planes_are"] = of_box ? "planes" : "sections";
@@ -219,12 +218,12 @@ class Pictures {
   }
 
   void distances() {
-    if (scene_.space != "ras") {
+    if (space() != Space::ras) {
       distances_mm_ = vertex_distances(*scene_.surface, *scene_.volume, scene_.stack_axis, options_.threads);
       return;
     }
     InterfaceComplex lps = *scene_.surface;
-    for (Vec3& p : lps.points) p = turned(p);
+    change_space(lps, Space::lps);
     distances_mm_ = vertex_distances(lps, *scene_.volume, scene_.stack_axis, options_.threads);
   }
 

@@ -14,13 +14,12 @@ namespace stackmesh {
 
 /// What the pictures of an HTML report are made of; the pointers need to live during draw_pictures only.
 struct HtmlScene {
-  const InterfaceComplex* surface = nullptr;  ///< the final surface, mm, in the frame that `space` names
-  const TetMesh* mesh = nullptr;              ///< its tetrahedra, in the same frame, if there are any
+  const InterfaceComplex* surface = nullptr;  ///< the final surface, in a world frame
+  const TetMesh* mesh = nullptr;              ///< its tetrahedra, in the same space, if there are any
   const LabelVolume* volume = nullptr;        ///< the labels that the mesh stands for ...
   const Stack* sections = nullptr;            ///< ... or its contours, for contour input
   int stack_axis = 2;                         ///< of the volume: 0, 1 or 2
   const SurfaceValues* values = nullptr;      ///< what a solver model says of the surface, if it is one's
-  std::string space = "lps";                  ///< "lps", "ras", or "none" where no anatomy is known
 };
 
 struct HtmlOptions {
@@ -31,7 +30,7 @@ struct HtmlOptions {
 
 /// The pictures of one mesh, packed for the page (modules/report/README.md describes their form).
 struct HtmlPictures {
-  std::string space;                                       ///< as in the scene
+  Space space = Space::lps;                                ///< of the scene's surface
   std::string json;                                        ///< what there is, and where
   std::vector<std::pair<std::string, std::string>> blobs;  ///< name, base64
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "model/space.h"
 #include "report/comparison.h"
 
 namespace stackmesh {
@@ -335,8 +336,7 @@ std::string model_html(const std::vector<HtmlSubject>& subjects) {
 }
 
 Vec3 place_of(const Defect& defect, const HtmlSubject& subject) {
-  const bool turned = subject.pictures != nullptr && subject.pictures->space == "ras";
-  return turned ? Vec3{-defect.where.x, -defect.where.y, defect.where.z} : defect.where;
+  return subject.pictures == nullptr ? defect.where : in_space(defect.where, Space::lps, subject.pictures->space);
 }
 
 std::string defects_html(const std::vector<HtmlSubject>& subjects) {
@@ -412,7 +412,7 @@ std::string provenance_html(const std::vector<HtmlSubject>& subjects) {
       continue;
     }
     out += "<ul class=\"warnings\">\n";
-    for (const std::string& w : s.report->warnings) out += "<li>" + escaped(w) + "</li>\n";
+    for (const Warning& w : s.report->warnings) out += "<li>" + escaped(w.text) + "</li>\n";
     out += "</ul>\n";
   }
   for (const HtmlSubject& s : subjects) out += stages_table(*s.report, subjects.size() > 1 ? " of " + s.name : "");

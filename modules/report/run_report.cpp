@@ -275,6 +275,8 @@ Json describe(const RunReport& r) {
   Json verdicts = Json::array(), defects = Json::array();
   for (const Verdict& v : r.verdicts) verdicts.push_back(verdict(v));
   for (const Defect& d : r.defects) defects.push_back(defect(d));
+  Json warning_details = Json::array();
+  for (const Warning& w : r.warnings) warning_details.push_back({{"code", to_text(w.code)}, {"where", w.where}});
   const bool grid = r.input.dimensions[0] > 0;
   Json j = {
       {"schema", 1},
@@ -310,7 +312,8 @@ Json describe(const RunReport& r) {
       {"defects", defects},
       {"limits", limits(r.limits)},
       {"provenance", provenance(r.provenance)},
-      {"warnings", r.warnings}};
+      {"warnings", texts_of(r.warnings)},
+      {"warning_details", warning_details}};
   if (r.fem) j["fem"] = fem(*r.fem);
   return j;
 }

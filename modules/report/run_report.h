@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stage_time.h"
+#include "base/warning.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/estimate_error.h"
@@ -149,7 +150,7 @@ struct RunReport {
   std::vector<Verdict> verdicts;  ///< in the order in which they are read
   std::vector<Defect> defects;    ///< where it fails
   Limits limits;                  ///< that the verdicts were made with
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// The report as JSON text (schema 1).

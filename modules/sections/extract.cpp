@@ -88,6 +88,7 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
   corner[axes.u] = corner[axes.v] = -0.5;
   stack.frame.origin = volume.world(corner[0], corner[1], corner[2]);
   stack.frame.axes = {volume.axes[axes.u], volume.axes[axes.v], volume.axes[axes.w]};
+  stack.frame.world = volume.space();
 
   const int step = slices_at_once(volume, axes, options.threads);
   const VoxelComponents components(volume, axes);

@@ -88,7 +88,7 @@ ContourSection cut_stitched(Stack stack, double z_mm) {
 Stack stack_of(const ContourSection& low, const ContourSection& high) {
   LabelContours both;
   both.sections = {low, high};
-  std::vector<std::string> unused;
+  std::vector<Warning> unused;
   ContourStackOptions as_they_are;
   as_they_are.repair = true;
   return sections_from_contours({both}, unused, as_they_are);

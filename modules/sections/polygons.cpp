@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "sections/contour_copies.h"
 #include "sections/contour_crossings.h"
 #include "sections/drawn_detail.h"
@@ -57,7 +58,7 @@ struct SourceSegment {
 
 class SectionMaker {
  public:
-  SectionMaker(const std::vector<LabelContours>& files, std::vector<std::string>& warnings, const ContourStackOptions& options)
+  SectionMaker(const std::vector<LabelContours>& files, std::vector<Warning>& warnings, const ContourStackOptions& options)
       : files_(files), warnings_(warnings), options_(options) {}
 
   Stack run() {
@@ -92,8 +93,8 @@ class SectionMaker {
     for (MaskedSection& m : masked) stack.sections.push_back(give_labels(std::move(m)));
     stack.pixel_mm = drawn_pixel_mm(stack, median_edge_);
     for (const auto& [f, heights] : repaired_)
-      warnings_.push_back(files_[f].path + ": " + name_of(f) + " has contours that cross themselves or each other at z = " + list_heights(heights) +
-                          " mm; what they go round is united");
+      warnings_.push_back(warning_at(WarningCode::contours_mended, files_[f].path, name_of(f) + " has contours that cross themselves or each other at z = " + list_heights(heights) +
+                          " mm; what they go round is united"));
     if (options_.report_overlaps) warn_overlaps();
     if (options_.merge) merge_labels(stack);
     return stack;
@@ -111,8 +112,8 @@ class SectionMaker {
           where.push_back(s.z_mm);
         }
       if (copies > 0)
-        warnings_.push_back(f.path + ": " + (f.name.empty() ? "label " + std::to_string(f.label) : "'" + f.name + "'") + " repeats " +
-                            std::to_string(copies) + " of its contours, or nearly so, at z = " + list_heights(where) + " mm; each counts once");
+        warnings_.push_back(warning_at(WarningCode::repeated, f.path, (f.name.empty() ? "label " + std::to_string(f.label) : "'" + f.name + "'") + " repeats " +
+                            std::to_string(copies) + " of its contours, or nearly so, at z = " + list_heights(where) + " mm; each counts once"));
     }
   }
 
@@ -202,8 +203,8 @@ class SectionMaker {
         if (level.z_mm > low && level.z_mm < high && level.of_file[f] == nullptr && missing++ == 0)
           first = level.z_mm;
       if (missing > 0)
-        warnings_.push_back(files_[f].path + " has no contour at " + std::to_string(missing) +
-                            " height(s) that other labels have (first: z = " + std::to_string(first) + " mm); it is empty there");
+        warnings_.push_back({WarningCode::missing_contours, files_[f].path, files_[f].path + " has no contour at " + std::to_string(missing) +
+                            " height(s) that other labels have (first: z = " + std::to_string(first) + " mm); it is empty there"});
     }
   }
 
@@ -224,8 +225,8 @@ class SectionMaker {
       }
       files_[f].sections = std::move(all);
       if (!made.empty())
-        warnings_.push_back(files_[f].path + ": " + name_of(f) + " has no contour at z = " + list_heights(made) +
-                            " mm, where other labels have some; its contours there are interpolated");
+        warnings_.push_back(warning_at(WarningCode::missing_contours, files_[f].path, name_of(f) + " has no contour at z = " + list_heights(made) +
+                            " mm, where other labels have some; its contours there are interpolated"));
       warn_gaps(f);
     }
   }
@@ -247,8 +248,8 @@ class SectionMaker {
       for (int k = 1; gaps[i] > 1.5 * usual && k <= missing && k <= 1000; ++k) lost.push_back(s[i].z_mm + k * gaps[i] / (missing + 1));
     }
     if (!lost.empty())
-      warnings_.push_back(files_[f].path + ": " + name_of(f) + " has no contour at about z = " + list_heights(lost) +
-                          " mm, where its usual gap of " + text_of(usual, "%.3g") + " mm asks for some; it is interpolated there");
+      warnings_.push_back(warning_at(WarningCode::missing_contours, files_[f].path, name_of(f) + " has no contour at about z = " + list_heights(lost) +
+                          " mm, where its usual gap of " + text_of(usual, "%.3g") + " mm asks for some; it is interpolated there"));
   }
 
   /// The labels that are merged become the smallest of them; what lay between two of them goes.
@@ -349,8 +350,8 @@ class SectionMaker {
     }
     for (const auto& [pair, p] : pairs)
       if (!p.open_z_mm.empty() && p.inside >= p.open_z_mm.size())
-        warnings_.push_back(files_[pair.first].path + ": " + name_of(pair.first) + " lies inside " + name_of(pair.second) + ", but reaches its outline at z = " +
-                            list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " + text_of(p.area_mm2, "%.3g") + " mm2:" + p.openings.substr(0, p.openings.size() - 1));
+        warnings_.push_back(warning_at(WarningCode::open_wall, files_[pair.first].path, name_of(pair.first) + " lies inside " + name_of(pair.second) + ", but reaches its outline at z = " +
+                            list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " + text_of(p.area_mm2, "%.3g") + " mm2:" + p.openings.substr(0, p.openings.size() - 1)));
   }
 
   /// Who lies inside whom, and who shares how much with whom.
@@ -363,17 +364,17 @@ class SectionMaker {
       if (!(volume > 1e-4 * std::min(volume_[first], volume_[loser]))) continue;  // rounding, a line shared
       const std::string how_much = text_of(volume, "%.4g") + " mm3";
       if (volume >= kInside_rel * volume_[loser])
-        warnings_.push_back(files_[loser].path + ": " + name_of(loser) + " lies wholly under " + name_of(first) +
-                            ", which has priority: nothing of its " + how_much + " is left");
+        warnings_.push_back(warning_at(WarningCode::overlap, files_[loser].path, name_of(loser) + " lies wholly under " + name_of(first) +
+                            ", which has priority: nothing of its " + how_much + " is left"));
       else if (volume >= kInside_rel * volume_[first])
         inside[loser] += (inside[loser].empty() ? "" : ", ") + name_of(first) + " (" + how_much + ")";
       else
-        warnings_.push_back(files_[loser].path + ": " + name_of(first) + " and " + name_of(loser) + " overlap in " + how_much + " (" +
+        warnings_.push_back(warning_at(WarningCode::overlap, files_[loser].path, name_of(first) + " and " + name_of(loser) + " overlap in " + how_much + " (" +
                             text_of(100 * volume / volume_[first], "%.2g") + " and " + text_of(100 * volume / volume_[loser], "%.2g") +
-                            " % of them), which went to " + name_of(first));
+                            " % of them), which went to " + name_of(first)));
     }
     for (const auto& [outer, names] : inside)
-      warnings_.push_back(files_[outer].path + ": inside " + name_of(outer) + ", and taken out of it: " + names);
+      warnings_.push_back(warning_at(WarningCode::taken_out, files_[outer].path, "inside " + name_of(outer) + ", and taken out of it: " + names));
   }
 
   GridPoint to_grid(const std::array<double, 2>& p) const {
@@ -598,7 +599,7 @@ class SectionMaker {
   }
 
   std::vector<LabelContours> files_;
-  std::vector<std::string>& warnings_;
+  std::vector<Warning>& warnings_;
   const ContourStackOptions options_;
   std::map<std::size_t, std::vector<double>> repaired_;             // heights where contours crossed
   std::map<std::size_t, double> volume_;                            // mm3 of each label's contours
@@ -610,7 +611,7 @@ class SectionMaker {
 
 }  // namespace
 
-Stack sections_from_contours(const std::vector<LabelContours>& files, std::vector<std::string>& warnings,
+Stack sections_from_contours(const std::vector<LabelContours>& files, std::vector<Warning>& warnings,
                              const ContourStackOptions& options) {
   return SectionMaker(files, warnings, options).run();
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/contours.h"
 #include "model/stack.h"
 #include "stitch/stitch.h"
@@ -31,7 +32,7 @@ struct ContourStackOptions {
 /// (sections/drawn_ends.h). Orientation of the input is free. The grid is a power of two mm, about 1e-5 of the box.
 /// @throws Error(input) naming file, section and contour where contours of one label cross themselves or each
 /// other, where labels share a number, or where fewer than two sections hold contours.
-Stack sections_from_contours(const std::vector<LabelContours>& files, std::vector<std::string>& warnings,
+Stack sections_from_contours(const std::vector<LabelContours>& files, std::vector<Warning>& warnings,
                              const ContourStackOptions& options = {});
 
 }  // namespace stackmesh

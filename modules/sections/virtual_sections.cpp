@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.h"
+#include "base/warning.h"
 #include "sections/layer_sections.h"
 #include "sections/virtual_layers.h"
 #include "model/edge_grid.h"
@@ -138,7 +139,7 @@ double closing_mm(const Stack& stack, bool high) {
 
 }  // namespace
 
-std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads, std::vector<std::string>& warnings) {
+std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads, std::vector<Warning>& warnings) {
   if (stack.sections.size() < 2) return 0;
   const std::size_t gaps = stack.sections.size() - 1;
   const double feature = contour_feature_mm(stack);
@@ -182,8 +183,8 @@ std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int t
     between[gap].push_back(layer_section(layer, kTolerance_px));
   });
   for (const OpenGap& g : open)
-    warnings.push_back("between the sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " + text_of(stack.sections[g.gap + 1].z_mm) +
-                       " mm contours that lie within others cannot be kept inside: a wall is open over about " + text_of(g.area_mm2) + " mm2");
+    warnings.push_back({WarningCode::open_wall, "", "between the sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " + text_of(stack.sections[g.gap + 1].z_mm) +
+                       " mm contours that lie within others cannot be kept inside: a wall is open over about " + text_of(g.area_mm2) + " mm2"});
   for (std::size_t end : {std::size_t{0}, gaps + 1})  // the stitcher closes the last of them
     between[end].erase(std::remove_if(between[end].begin(), between[end].end(), [](const Section& s) { return s.edges.empty(); }), between[end].end());
   std::size_t total = 0;

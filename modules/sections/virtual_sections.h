@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/stack.h"
 
 namespace stackmesh {
@@ -15,7 +16,7 @@ namespace stackmesh {
 /// the contours (contour_feature_mm), where it is above 1.5 of them, none where its two sections are all but the same
 /// @param warnings gaps where contours do not allow that nesting is kept, with the area of the opening
 /// @return how many were added
-std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads, std::vector<std::string>& warnings);
+std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads, std::vector<Warning>& warnings);
 
 /// What counts as a pixel of contour input, mm: a 64th of a typical contour's length or width, but not below the
 /// typical edge. Where virtual sections so close would hold more than about half a million points, it is longer.

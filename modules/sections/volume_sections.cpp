@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "fair/fair_labels.h"
 #include "sections/virtual_slices.h"
 #include "sections/gap_pieces.h"
@@ -35,9 +36,9 @@ VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_p
     for (int gap : other)
       for (int k = gap * period + 1; k < (gap + 1) * period; ++k) places.free[k] = 0;
     out.contours = extract_sections(volume, contours, progress, &places);
-    out.warnings.push_back("between slices " + std::to_string(other.front() + 1) + " and " + std::to_string(other.front() + 2) +
+    out.warnings.push_back({WarningCode::held_to_slices, "", "between slices " + std::to_string(other.front() + 1) + " and " + std::to_string(other.front() + 2) +
                            (other.size() > 1 ? " and in " + std::to_string(other.size() - 1) + " more gaps" : "") +
-                           " smooth sections would join or split pieces of a label: they keep closer to the interpolated slices there");
+                           " smooth sections would join or split pieces of a label: they keep closer to the interpolated slices there"});
   }
   out.faired = std::move(places.surface);
   return out;

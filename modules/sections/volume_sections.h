@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/monitor.h"
+#include "base/warning.h"
 #include "sections/extract.h"
 #include "model/complex.h"
 #include "model/label_volume.h"
@@ -22,7 +23,7 @@ struct SectionOptions {
 
 struct VolumeSections {
   ContourResult contours;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   InterfaceComplex faired;  ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/warning.h"
 #include "model/edge_grid.h"
 
 namespace stackmesh {
@@ -82,7 +83,7 @@ std::vector<GridPoint> drawn_points(const Stack& stack, const Section& section, 
 
 }  // namespace
 
-double merge_close_contours(Stack& stack, double tolerance_mm, int /*threads*/, std::vector<std::string>& warnings) {
+double merge_close_contours(Stack& stack, double tolerance_mm, int /*threads*/, std::vector<Warning>& warnings) {
   if (tolerance_mm <= 0) return 0;
   double largest = 0;
   std::size_t reduced = 0, refused = 0;
@@ -115,7 +116,7 @@ double merge_close_contours(Stack& stack, double tolerance_mm, int /*threads*/, 
     std::ostringstream text;
     text << "--snap " << tolerance_mm << " mm was reduced in " << reduced << " section(s) and left out in " << refused
          << ", where it would have made contours cross";
-    warnings.push_back(text.str());
+    warnings.push_back({WarningCode::merge_reduced, "", text.str()});
   }
   return largest;
 }

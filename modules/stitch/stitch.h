@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/monitor.h"
+#include "base/warning.h"
 #include "model/complex.h"
 #include "model/stack.h"
 
@@ -36,7 +37,7 @@ struct StitchResult {
   std::size_t added_points = 0;        ///< points that no section has (paper 3.3)
   std::map<Label, LabelCaps> caps;
   double snap_used_mm = 0;             ///< largest merge tolerance that was applied
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Stitches a stack of sections into the closed complex of all label interfaces

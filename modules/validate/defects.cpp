@@ -386,6 +386,7 @@ std::vector<Defect> find_defects(const InterfaceComplex& complex, const SurfaceC
 
 InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh* mesh, const std::vector<Defect>& defects) {
   InterfaceComplex out;
+  out.space = complex.space;
   std::unordered_map<std::int64_t, std::int32_t> number;
   const auto add = [&](const std::vector<Vec3>& points, std::array<std::int32_t, 3> v, std::int64_t offset, Label label) {
     InterfaceTriangle t;

@@ -10,10 +10,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/warning.h"
 #include "volume/compact.h"
 #include "volume/improve_tets.h"
 #include "volume/relax_surface.h"
 #include "volume/label_tets.h"
+#include "volume/tetgen_words.h"
 #include "volume/worker_process.h"
 #include "volume/worker_protocol.h"
 
@@ -105,34 +107,6 @@ Vec3 turned(Vec3 p, int turns) {
 std::string describe(const Call& call, const std::string& switches) {
   return "TetGen -" + switches + (call.z_scale == 1 ? "" : " with z scaled by " + number(call.z_scale)) +
          (call.turns == 0 ? "" : " with the axes turned " + std::string(call.turns == 1 ? "once" : "twice"));
-}
-
-/// What TetGen complained about, as one line; empty if it did not complain. Monitor, point numbers (they are
-/// not the complex's) and hints are left out.
-std::string complaint(const std::string& text) {
-  static const char* const signs[] = {"intersect",       "Invalid PLC",   "duplicated", "nearly overlap",
-                                      "identical verts", "is replaced",   "trivial",    "needs at least",
-                                      "rror:",           "internal error"};
-  std::vector<std::string> told;
-  std::string line;
-  for (std::size_t at = 0; at <= text.size(); ++at) {
-    if (at < text.size() && text[at] != '\n') {
-      if (static_cast<unsigned char>(text[at]) >= ' ') line += text[at];
-      continue;
-    }
-    const std::size_t assertion = line.find("Assertion");
-    const bool matters = std::any_of(std::begin(signs), std::end(signs),
-                                     [&](const char* s) { return line.find(s) != std::string::npos; });
-    if (assertion != std::string::npos) {
-      told.push_back(line.substr(assertion, 120));
-    } else if (matters && line.find('[') == std::string::npos) {
-      line.erase(0, line.find_first_not_of(' '));
-      line.erase(line.find_last_not_of(" .") + 1);
-      told.push_back(line.substr(0, 120));
-    }
-    line.clear();
-  }
-  return told.empty() ? "" : told.back();  // the last one is what stopped it
 }
 
 class Filler {
@@ -301,7 +275,7 @@ class Filler {
     reply = worker::run(program_, request, deadline, options_.given_up);
     const std::lock_guard<std::mutex> lock(warnings_mutex_);
     if (reply.killed) retry_is_useless_ = killed_ = true;
-    else warnings_.push_back("the volume mesher was started again, as " + how);
+    else warnings_.push_back({WarningCode::mesher, "", "the volume mesher was started again, as " + how});
     return reply;
   }
 
@@ -356,10 +330,10 @@ class Filler {
       }
       case Reply::Kind::gave_up:
       case Reply::Kind::died: {
-        const std::string why = complaint(reply.text);
+        const std::string why = volume::complaint(reply.text);
         FillResult result = why.empty() ? failure(Status::crashed, name + " died" + reason(reply))
                                         : failure(Status::refused, name + " refused the surface: " + why);
-        result.offending_triangles = named_triangles(reply.text);
+        result.offending_triangles = volume::named_triangles(reply.text, input_);
         return result;
       }
       case Reply::Kind::done:
@@ -393,6 +367,7 @@ class Filler {
 
   /// Improves the tets and compares each label's volume with that of its surface.
   FillResult assemble(TetMesh mesh, const std::string& name) const {
+    mesh.space = complex_.space;
     FillResult result;
     std::string improved;
     if (options_.improve_deg) {
@@ -465,7 +440,7 @@ class Filler {
       for (const std::int32_t i : reply.faces)
         if (i >= 0 && i < count) found.insert(i);
     } else {
-      const auto named = named_triangles(reply.text);
+      const auto named = volume::named_triangles(reply.text, input_);
       refusal.offending_triangles.insert(refusal.offending_triangles.end(), named.begin(), named.end());
       std::sort(refusal.offending_triangles.begin(), refusal.offending_triangles.end());
       refusal.offending_triangles.erase(
@@ -479,34 +454,12 @@ class Filler {
     return true;
   }
 
-  /// The triangles that TetGen names by their corners, "[a, b, c] #facet", or whose edges it names, "(a, b)".
-  std::vector<std::int32_t> named_triangles(const std::string& text) const {
-    std::set<std::set<std::int32_t>> named;
-    for (std::size_t at = 0; (at = text.find_first_of("[(", at)) != std::string::npos; ++at) {
-      int a = -1, b = -1, c = -1;
-      if (std::sscanf(text.c_str() + at + 1, "%d , %d , %d", &a, &b, &c) == 3) {
-        named.insert({a, b, c});
-      } else if (std::sscanf(text.c_str() + at + 1, "%d , %d", &a, &b) == 2) {
-        named.insert({a, b});
-      }
-    }
-    std::vector<std::int32_t> out;
-    if (named.empty()) return out;
-    for (std::size_t i = 0; 3 * i < input_.corners.size(); ++i) {
-      const std::int32_t* c = input_.corners.data() + 3 * i;
-      if (named.count({c[0], c[1], c[2]}) || named.count({c[0], c[1]}) || named.count({c[1], c[2]}) ||
-          named.count({c[2], c[0]}))
-        out.push_back(static_cast<std::int32_t>(i));
-    }
-    return out;
-  }
-
   const InterfaceComplex& complex_;
   const FillOptions& options_;
   worker::Program program_;
   Clock::time_point deadline_;
   Compact input_;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
   std::mutex warnings_mutex_;
   std::atomic<bool> killed_{false};    // twice in a row
   std::atomic<bool> retry_is_useless_{false};  // no worker to be had, or an invalid complex: trying again is no use

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/complex.h"
 #include "model/tet_mesh.h"
 
@@ -46,7 +47,7 @@ struct FillResult {
   Status status = Status::refused;
   std::string message;   ///< one line: what filled it, or why nothing did
   std::string fallback;  ///< one line: what was tried before in vain; empty when the first attempt succeeded
-  std::vector<std::string> warnings;  ///< a worker that was killed from outside and started again
+  std::vector<Warning> warnings;  ///< a worker that was killed from outside and started again
   TetMesh mesh;         ///< the complex's points come first, bit-identical but for `moved_points`; points added inside follow
   std::vector<std::int32_t> moved_points;  ///< points of the complex that improving the tets moved a little (improve_deg; relax_surface.h), ascending
   std::vector<std::int32_t>

@@ -114,6 +114,7 @@ LayerPlan plan_layers(const InterfaceComplex& complex, const std::map<Label, Lay
   plan.sizes = sizes;
   plan.faces = volume::compact(complex).welded;
   plan.core.points = complex.points;
+  plan.core.space = complex.space;
   plan.core.triangles = plan.faces;
   plan.foot.assign(complex.points.size(), -1);
   plan.thickness_mm.assign(complex.points.size(), 0);

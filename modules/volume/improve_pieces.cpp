@@ -125,6 +125,7 @@ std::vector<char> change_pieces(TetMesh& mesh, std::size_t kept, const std::vect
 
   // The points that stay, then each piece's own.
   TetMesh out;
+  out.space = mesh.space;
   std::vector<std::int32_t> number(mesh.points.size(), -1);
   std::vector<char> shared;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {

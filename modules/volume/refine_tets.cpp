@@ -125,6 +125,7 @@ InterfaceComplex surface_of(const TetMesh& mesh) {
   for (const InterfaceTriangle& f : mesh.faces)
     for (const std::int32_t v : f.v) number[v] = 0;
   InterfaceComplex surface;
+  surface.space = mesh.space;
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
     number[v] = static_cast<std::int32_t>(surface.points.size());

@@ -3,10 +3,12 @@
 
 #include <atomic>
 #include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/warning.h"
 #include "base/sha256.h"
 #include "base/parallel.h"
 #include "base/monitor.h"
@@ -33,6 +35,17 @@ ErrorKind kind_of(Action action) {
   }
   ADD_FAILURE() << "nothing was thrown";
   return ErrorKind::internal;
+}
+
+TEST(Warning, SaysWhereAndWhatAndEveryCodeHasItsOwnName) {
+  const Warning w = warning_at(WarningCode::header, "a.nii", "its unit is not known");
+  EXPECT_EQ(w.text, "a.nii: its unit is not known");
+  EXPECT_EQ(w.where, "a.nii");
+  EXPECT_EQ(texts_of({w, {WarningCode::frame, "", "uncertain"}}), (std::vector<std::string>{"a.nii: its unit is not known", "uncertain"}));
+  std::set<std::string> names;
+  const int count = static_cast<int>(WarningCode::other) + 1;
+  for (int code = 0; code < count; ++code) names.insert(to_text(static_cast<WarningCode>(code)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(count));
 }
 
 TEST(Error, KindsAreTheExitCodesOfTheProgram) {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "model/label_table.h"
 #include "model/label_volume.h"
+#include "model/space.h"
 #include "model/stack.h"
 #include "random_stacks.h"
 
@@ -121,6 +122,59 @@ TEST(Frame, MapsThereAndBack) {
   EXPECT_TRUE(left.mirrors());
   for (const Frame& f : {right, left})
     EXPECT_LT(norm(f.to_stack(f.to_world({7, -5, 0.25})) - Vec3{7, -5, 0.25}), 1e-12);
+}
+
+TEST(Space, AMirroringFrameTurnsTrianglesAndElementsRound) {
+  Frame frame;
+  frame.origin = {10, 20, 30};
+  frame.axes = {Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}};
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}};
+  mesh.tets = {{0, 1, 2, 3}};
+  mesh.labels = {4};
+  mesh.faces = {{{0, 2, 1}, 4, 0}};
+  change_space(mesh, Space::lps, frame);
+  EXPECT_EQ(mesh.space, Space::lps);
+  const auto at = [&](std::int32_t v) { return mesh.points[v]; };
+  const auto& t = mesh.tets[0];
+  EXPECT_GT(dot(cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0])), at(t[3]) - at(t[0])), 0);
+  const auto& f = mesh.faces[0].v;
+  EXPECT_LT(cross(at(f[1]) - at(f[0]), at(f[2]) - at(f[0])).z, 0);  // still out of the tetrahedron
+  EXPECT_EQ(at(3).x, 10);
+  EXPECT_EQ(at(3).z, 32);
+}
+
+TEST(Space, RasIsHalfARevolutionAndBackIsExact) {
+  InterfaceComplex surface;
+  surface.points = {{0.1, -0.3, 7}, {1e-17, 2, 3}, {5, 6, 1.0 / 3}};
+  surface.triangles = {{{0, 1, 2}, 1, 0}};
+  surface.space = Space::lps;
+  const InterfaceComplex before = surface;
+  change_space(surface, Space::ras);
+  EXPECT_EQ(surface.space, Space::ras);
+  EXPECT_EQ(surface.points[0].x, -0.1);
+  EXPECT_EQ(surface.points[0].y, 0.3);
+  EXPECT_EQ(surface.points[0].z, 7);
+  EXPECT_EQ(surface.triangles[0].v, before.triangles[0].v);
+  const Vec3 p = between(Space::ras, Space::lps).to_world(surface.points[2]);
+  EXPECT_EQ(norm(p - before.points[2]), 0);
+  change_space(surface, Space::lps);
+  for (std::size_t i = 0; i < surface.points.size(); ++i) EXPECT_EQ(norm(surface.points[i] - before.points[i]), 0);
+}
+
+TEST(Space, StackToRasGoesByTheFramesWorld) {
+  InterfaceComplex surface;
+  surface.points = {{1, 2, 3}};
+  Frame frame;
+  frame.origin = {10, 0, 0};
+  change_space(surface, Space::ras, frame);
+  EXPECT_EQ(surface.points[0].x, -11);
+  EXPECT_EQ(surface.points[0].y, -2);
+  surface.space = Space::none;  // no anatomy: taken as they are
+  change_space(surface, Space::lps);
+  EXPECT_EQ(surface.points[0].x, -11);
+  EXPECT_THROW(change_space(surface, Space::stack), Error);  // only a frame leads there
+  EXPECT_THROW(in_space({1, 2, 3}, Space::stack, Space::lps), Error);
 }
 
 TEST(LabelArea, IsSignedByTheSideThatTheLabelIsOn) {

@@ -51,7 +51,7 @@ const Surface& organ(int side) {
     }
     file.sections.push_back(section);
   }
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Stack stack = sections_from_contours({file}, warnings);
   Monitor quiet;
   s.complex = stitch_sections(stack, {}, quiet).complex;

@@ -34,7 +34,7 @@ Stack organ(int sections, int vertices) {
     }
     file.sections.push_back(s);
   }
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   return sections_from_contours({file}, warnings);
 }
 

@@ -30,9 +30,9 @@ EnhanceResult enhance(const InterfaceComplex& c, const EnhanceOptions& o) {
   return enhance_complex(c, o, quiet);
 }
 
-bool is_named(const std::vector<std::string>& warnings, Label label) {
-  for (const std::string& w : warnings)
-    if (w.find("label " + std::to_string(label) + ":") != std::string::npos) return true;
+bool is_named(const std::vector<Warning>& warnings, Label label) {
+  for (const Warning& w : warnings)
+    if (w.where == "label " + std::to_string(label)) return true;
   return false;
 }
 
@@ -351,7 +351,7 @@ TEST(EnhanceComplex, ItIsSaidWhereEdgesStayShorterAndWhy) {
     o.edge_length_mm = edge_mm;
     Monitor quiet;
     std::string all;
-    for (const std::string& w : enhance_complex(c, o, quiet).warnings) all += w + "\n";
+    for (const Warning& w : enhance_complex(c, o, quiet).warnings) all += w.text + "\n";
     return all;
   };
   EXPECT_EQ(told(ball(10, 4), 2).find("shorter than"), std::string::npos);

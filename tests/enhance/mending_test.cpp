@@ -122,7 +122,7 @@ TEST(EnhanceMending, FacesLongerThanABlockAreSplit) {
     section.polygons.push_back(p);
     file.sections.push_back(section);
   }
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Monitor quiet;
   StitchOptions flat;
   flat.caps = Caps::flat;

@@ -31,7 +31,7 @@ TEST_F(Fibres, TurnThroughAFlatWallAsTheRuleSays) {
   SolverModel m = name_sets(mesh, {}, sets);
   law(std::string("\"1\": {") + kOrthotropic + R"(, "fibres": {"from": "inner", "to": "outer", "angles_deg": [60, -60], "along": [0, 0, 2]}})", "{}");
   const MaterialPlan plan = read_law(at("law.json"));
-  assign_materials(m, &plan, nullptr, {});
+  assign_materials(m, &plan, nullptr);
   ASSERT_EQ(m.sets.axes.size(), m.mesh.tets.size());
   for (std::size_t t = 0; t < m.mesh.tets.size(); ++t) {
     double x = 0;
@@ -57,7 +57,7 @@ TEST_F(Fibres, GoRoundATube) {
   // The inner face is the set of all faces at the smaller radius; heights reach to 4 mm.
   law(std::string("\"1\": {") + kOrthotropic + R"(, "fibres": {"from": "label_1_outer_2", "to": "label_1_outer_1", "angles_deg": [0, 0], "along": [0, 0, 1]}})", "{}");
   const MaterialPlan plan = read_law(at("law.json"));
-  assign_materials(m, &plan, nullptr, {});
+  assign_materials(m, &plan, nullptr);
   double worst = 0;
   for (std::size_t t = 0; t < m.mesh.tets.size(); ++t) {
     Vec3 c;

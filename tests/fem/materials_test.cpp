@@ -7,6 +7,7 @@
 #include "blocks.h"
 #include "fem/assign_materials.h"
 #include "fem/name_sets.h"
+#include "model/space.h"
 #include "solver.h"
 #include "volume/raise_order.h"
 
@@ -106,7 +107,7 @@ TEST_F(Materials, LinearFieldIsIntegratedExactlyInsideAndNearlyAtTheBorder) {
     TetMesh mesh = block(4, 4, 4, {2, 2, 2});
     if (second) mesh = raise_order(mesh).mesh;
     SolverModel m = name_sets(mesh, {}, {});
-    const MaterialReport r = assign_materials(m, &p, &image, {});
+    const MaterialReport r = assign_materials(m, &p, &image);
     std::size_t inner = 0;
     for (std::size_t t = 0; t < m.mesh.tets.size(); ++t) {
       Vec3 c;
@@ -136,8 +137,8 @@ TEST_F(Materials, AverageOfTheModulusIsNotTheModulusOfTheAverage) {
   SolverModel a = name_sets(block(2, 2, 2, {4, 4, 4}), {}, {}), b = name_sets(block(2, 2, 2, {4, 4, 4}), {}, {});
   const std::string end = R"("}, "labels": {"1": {"law": "sq", "poisson": 0.3}}})";
   const MaterialPlan field = plan(law + "modulus" + end), mean = plan(law + "intensity" + end);
-  const double e_field = assign_materials(a, &field, &image, {}).labels[0].young_mean_mpa;
-  const double e_mean = assign_materials(b, &mean, &image, {}).labels[0].young_mean_mpa;
+  const double e_field = assign_materials(a, &field, &image).labels[0].young_mean_mpa;
+  const double e_mean = assign_materials(b, &mean, &image).labels[0].young_mean_mpa;
   EXPECT_NEAR(e_mean, 250, 15);    // (0.5 g/cm3)^2
   // Linear between voxel centres: the mean of the square is 1/4 + 1/4 * (1/3)^3 of the full contrast's.
   EXPECT_NEAR(e_field, 1000 * (0.25 + 0.25 / 27), 5);
@@ -154,7 +155,7 @@ TEST_F(Materials, OnlyVoxelsOfTheLabelSpeakForIt) {
   const auto moduli = [&](int erode) {
     SolverModel m = name_sets(block(4, 4, 4, {2, 2, 2}), {}, {});
     const MaterialPlan p = plan(law + std::to_string(erode) + R"(}, "labels": {"1": {"law": "line", "poisson": 0.3}}})");
-    assign_materials(m, &p, &image, {});
+    assign_materials(m, &p, &image);
     return m.sets.modulus_mpa;
   };
   for (const double e : moduli(0)) {
@@ -169,7 +170,7 @@ TEST_F(Materials, FloorsAndCeilingsAreCountedAndAMissingFloorNamesTheElement) {
   SolverModel m = name_sets(block(2, 2, 2, {4, 4, 4}), {{1, "femur"}}, {});
   const std::string law = std::string(kHead) + kCalibration + kLinear + R"("labels": {"femur": {"law": "line", "poisson": 0.3)";
   MaterialPlan p = plan(law + R"(, "floor_MPa": 10, "ceiling_MPa": 1500}}})");
-  const MaterialReport r = assign_materials(m, &p, &image, {});
+  const MaterialReport r = assign_materials(m, &p, &image);
   EXPECT_NEAR(r.labels[0].clamped_low + r.labels[0].clamped_high, 1, 0.51);
   EXPECT_GT(r.labels[0].clamped_low, 0.2);
   EXPECT_GT(r.labels[0].clamped_high, 0.2);
@@ -177,7 +178,7 @@ TEST_F(Materials, FloorsAndCeilingsAreCountedAndAMissingFloorNamesTheElement) {
   EXPECT_EQ(r.labels[0].young_max_mpa, 1500);
   p = plan(law + "}}}");
   try {
-    assign_materials(m, &p, &image, {});
+    assign_materials(m, &p, &image);
     ADD_FAILURE() << "a negative modulus was accepted";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("element "), std::string::npos) << e.what();
@@ -192,7 +193,7 @@ TEST_F(Materials, BinsHoldEveryElementOnceAndKeepTheMean) {
     SolverModel m = name_sets(block(4, 4, 4, {2, 2, 2}), {}, {});
     const MaterialPlan p = plan(std::string(kHead) + kCalibration + kLinear + R"("mapping": {"bins": 20, "binning": ")" + how +
                                 R"("}, "labels": {"1": {"law": "line", "poisson": 0.3}}})");
-    const MaterialReport r = assign_materials(m, &p, &image, {});
+    const MaterialReport r = assign_materials(m, &p, &image);
     EXPECT_LE(r.labels[0].materials, 20u);
     EXPECT_GT(r.labels[0].materials, 5u);
     std::set<std::int32_t> seen;
@@ -218,7 +219,7 @@ TEST_F(Materials, LogarithmicBinsKeepEveryElementWithinHalfABin) {
     SolverModel m = name_sets(block(8, 8, 8, {1, 1, 1}), {}, {});
     const MaterialPlan p = plan(std::string(kHead) + R"("laws": {"line": {"steps": [{"from": "grey", "to": "E", "unit": "MPa", "factor": 1}]}}, )" + mapping +
                                 R"("labels": {"1": {"law": "line", "poisson": 0.3, "ceiling_MPa": 20000}}})");
-    const MaterialReport r = assign_materials(m, &p, &image, {});
+    const MaterialReport r = assign_materials(m, &p, &image);
     double worst = 0;
     std::set<std::int32_t> seen;
     for (const ElementMaterial& b : m.sets.materials)
@@ -244,11 +245,10 @@ TEST_F(Materials, RasMeshesMeetTheSameVoxels) {
   const IntensityVolume image = image_of([](Vec3 p) { return 300 + 20 * p.x - 11 * p.y; });
   const MaterialPlan p = plan(std::string(kHead) + kCalibration + kLinear + R"("labels": {"1": {"law": "line", "poisson": 0.3}}})");
   SolverModel lps = name_sets(block(2, 2, 2, {4, 4, 4}), {}, {}), ras = lps;
-  for (Vec3& v : ras.mesh.points) v = {-v.x, -v.y, v.z};
-  assign_materials(lps, &p, &image, {});
-  MaterialOptions options;
-  options.ras = true;
-  assign_materials(ras, &p, &image, options);
+  change_space(ras.mesh, Space::ras);
+  ASSERT_EQ(ras.mesh.points[0].x, -lps.mesh.points[0].x);
+  assign_materials(lps, &p, &image);
+  assign_materials(ras, &p, &image);
   for (std::size_t t = 0; t < lps.sets.modulus_mpa.size(); ++t) EXPECT_NEAR(lps.sets.modulus_mpa[t], ras.sets.modulus_mpa[t], 1e-6);
 }
 

@@ -277,10 +277,12 @@ TEST(Skins, AreShellsOnTheOuterFaces) {
   EXPECT_EQ(m.sets.shells[0].name, "left_lung_skin");
 }
 
-std::size_t selected(const std::string& text, const SetOptions& more = {}) {
-  SetOptions options = more;
+std::size_t selected(const std::string& text, Space space = Space::lps) {
+  SetOptions options;
   options.selections.push_back(text);
-  return faces_of(name_sets(two_labels(), kNames, options), text.substr(0, text.find('=')));
+  TetMesh mesh = two_labels();
+  mesh.space = space;
+  return faces_of(name_sets(mesh, kNames, options), text.substr(0, text.find('=')));
 }
 
 TEST(Selections, PickTheFacesTheyDescribe) {
@@ -305,9 +307,7 @@ TEST(Selections, MarkupsAreTurnedIntoTheMeshsFrame) {
   write("RAS", "[-0.5, -0.5, 0]");
   EXPECT_EQ(selected("s=points:" + path + ",0.5"), 2u);
   write("RAS", "[0.5, 0.5, 0]");
-  SetOptions ras;
-  ras.ras = true;
-  EXPECT_EQ(selected("s=points:" + path + ",0.5", ras), 2u);
+  EXPECT_EQ(selected("s=points:" + path + ",0.5", Space::ras), 2u);
   expect_error([&] { selected("s=points:" + path + ",0.1"); }, ErrorKind::input, {"selection 's' is empty", "nearest face"});
   std::ofstream(path) << "no json";
   expect_error([&] { selected("s=points:" + path + ",0.5"); }, ErrorKind::input, {"no Slicer markups file", path});

@@ -71,8 +71,10 @@ TEST_F(ContourInput, RepeatedPointsAreRemovedWithAWarning) {
       write("a.cnt", "S 2\nv 4 z 0\n" + square + "v 7 z 1\n{\n0 0\n0 0\n4 0\n4 4\n4 4\n0 4\n0 0\n}\n"));
   EXPECT_EQ(f.sections[1].polygons[0].points.size(), 4u);
   ASSERT_EQ(f.warnings.size(), 1u);
-  EXPECT_NE(f.warnings[0].find("3 repeated points"), std::string::npos);
-  EXPECT_NE(f.warnings[0].find("section 2 (z 1 mm): 3"), std::string::npos) << f.warnings[0];
+  EXPECT_NE(f.warnings[0].text.find("3 repeated points"), std::string::npos);
+  EXPECT_EQ(f.warnings[0].code, stackmesh::WarningCode::repeated);
+  EXPECT_EQ(f.warnings[0].text.rfind(f.warnings[0].where + ": ", 0), 0u);
+  EXPECT_NE(f.warnings[0].text.find("section 2 (z 1 mm): 3"), std::string::npos) << f.warnings[0].text;
 }
 
 TEST_F(ContourInput, TooFewPointsNameSectionAndContour) {

@@ -66,9 +66,9 @@ inline void expect_unreadable(const std::string& path, std::vector<std::string> 
   parts.push_back(path);
   expect_error([&] { stackmesh::read_label_volume(path); }, parts);
 }
-inline bool has_warning(const std::vector<std::string>& warnings, const std::string& part) {
-  for (const std::string& w : warnings)
-    if (w.find(part) != std::string::npos) return true;
+inline bool has_warning(const std::vector<stackmesh::Warning>& warnings, const std::string& part) {
+  for (const stackmesh::Warning& w : warnings)
+    if (w.text.find(part) != std::string::npos) return true;
   return false;
 }
 /// The label number of a voxel.

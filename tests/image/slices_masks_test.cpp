@@ -151,9 +151,9 @@ TEST_F(Masks, BecomeNamedLabelsInNaturalOrder) {
   const std::vector<std::uint16_t> expected = {1, 1, 0, 2, 3, 0, 0, 0, 0, 0, 0, 1};
   EXPECT_EQ(v.voxels, expected);
   ASSERT_EQ(v.warnings.size(), 2u);
-  EXPECT_NE(v.warnings[0].find("'aorta' and 'rib_2' overlap in 1 voxel"), std::string::npos) << v.warnings[0];
-  EXPECT_NE(v.warnings[1].find("'rib_2' and 'rib_10' overlap in 1 voxel"), std::string::npos)
-      << v.warnings[1];
+  EXPECT_NE(v.warnings[0].text.find("'aorta' and 'rib_2' overlap in 1 voxel"), std::string::npos) << v.warnings[0].text;
+  EXPECT_NE(v.warnings[1].text.find("'rib_2' and 'rib_10' overlap in 1 voxel"), std::string::npos)
+      << v.warnings[1].text;
 }
 
 TEST_F(Masks, WithoutVoxelsAreLeftOutAndNumbersStay) {

@@ -172,7 +172,9 @@ TEST(MeshLabels, LeavesSmallPiecesOutAndShowsTheLabelsItUsed) {
   EXPECT_EQ(m.changed_labels->voxels[v.index(1, 1, 1)], 0);
   for (const LabelSurface& l : m.surface_check.labels) EXPECT_EQ(l.components, 1) << l.label;
   ASSERT_FALSE(m.warnings.empty());
-  EXPECT_NE(m.warnings[0].find("left out"), std::string::npos);
+  EXPECT_NE(m.warnings[0].text.find("left out"), std::string::npos);
+  EXPECT_EQ(m.warnings[0].code, WarningCode::pieces_left_out);
+  EXPECT_EQ(m.warnings[0].where.rfind("label ", 0), 0u);
 }
 
 TEST(MeshLabels, TellsHowFarItCameWhereNothingIsFilled) {

@@ -55,11 +55,11 @@ std::string error_of(const std::string& path, const MeshReadOptions& options = {
 class ReadsWhatWeWrite : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ReadsWhatWeWrite, VolumesWithLabelsFrameAndNames) {
-  const TetMesh mesh = sample_mesh();
+  TetMesh mesh = sample_mesh();
+  mesh.space = Space::ras;
   MeshWriteOptions options;
   options.labels = sample_labels();
   options.msh2 = GetParam() == "2.msh";
-  options.space = WorldSpace::ras;
   AtomicFiles files;
   const std::string path = folder() + "/volume" + GetParam();
   write_volume(files, path, mesh, options);
@@ -67,7 +67,7 @@ TEST_P(ReadsWhatWeWrite, VolumesWithLabelsFrameAndNames) {
 
   const MeshFile read = read_mesh(path);
   ASSERT_EQ(read.tets.size(), mesh.tets.size());
-  EXPECT_EQ(read.space, WorldSpace::ras);
+  EXPECT_EQ(read.space, Space::ras);
   EXPECT_EQ(read.points.size(), mesh.points.size() - 1);  // one is used by nothing
   EXPECT_EQ(std::vector<Label>({3, 7, 12}), [&] {
     std::vector<Label> labels = read.tet_labels;
@@ -101,7 +101,7 @@ TEST_P(ReadsSurfacesWeWrite, WithVolumeOfEachLabelFile) {
   files.commit();
   for (const Label label : {3, 7, 12}) {
     const MeshFile read = read_mesh(folder() + "/surface_" + std::to_string(label) + GetParam());
-    EXPECT_EQ(read.space, WorldSpace::lps);
+    EXPECT_EQ(read.space, Space::lps);
     const bool sides = read.label_source == LabelSource::sides, sets = read.label_source == LabelSource::sets;
     EXPECT_EQ(sides, GetParam() == ".ply" || GetParam() == ".vtp");
     EXPECT_NEAR(enclosed(read.points, read.triangles, sides || sets ? label : 1), tet_volume(mesh, label), GetParam() == ".stl" ? 1e-3 : 1e-9) << label;
@@ -157,7 +157,7 @@ TEST(ReadMesh, QuadsAndPolygonsBecomeTrianglesAndItSaysSo) {
                                           "OFF # SPACE=RAS\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
                                           "4 0 3 2 1 255 0 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n"));
   EXPECT_EQ(read.triangles.size(), 12u);
-  EXPECT_EQ(read.space, WorldSpace::ras);
+  EXPECT_EQ(read.space, Space::ras);
   EXPECT_NEAR(enclosed(read.points, read.triangles, 1), 1, 1e-12);
   ASSERT_FALSE(read.notes.empty());
   EXPECT_NE(read.notes[0].find("6 quads or polygons"), std::string::npos);

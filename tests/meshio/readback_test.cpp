@@ -23,12 +23,12 @@ int run(const std::string& command) {
 }
 
 /// Writes the sample in every format into `folder`, with what a reader must find there.
-std::vector<std::string> write_sample(const std::string& folder, WorldSpace space) {
+std::vector<std::string> write_sample(const std::string& folder, Space space) {
   ::mkdir(folder.c_str(), 0777);
-  const TetMesh mesh = sample_mesh();
-  const InterfaceComplex surface = sample_surface(mesh);
+  TetMesh mesh = sample_mesh();
+  InterfaceComplex surface = sample_surface(mesh);
+  mesh.space = surface.space = space;
   MeshWriteOptions options;
-  options.space = space;
   options.labels = sample_labels();
   std::vector<std::string> names;
   AtomicFiles files;
@@ -100,7 +100,7 @@ int read_back(const std::string& folder) {
   return run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/readback.py' '" + folder + "'");
 }
 
-class Readback : public testing::TestWithParam<std::pair<WorldSpace, const char*>> {};
+class Readback : public testing::TestWithParam<std::pair<Space, const char*>> {};
 
 TEST_P(Readback, VtkAndMeshioFindTheSameCountsLabelsAndVolumes) {
   const auto [space, name] = GetParam();
@@ -112,9 +112,9 @@ TEST_P(Readback, VtkAndMeshioFindTheSameCountsLabelsAndVolumes) {
   EXPECT_EQ(code, 0) << "see the lines above; files in " << folder;
 }
 INSTANTIATE_TEST_SUITE_P(Spaces, Readback,
-                         testing::Values(std::make_pair(WorldSpace::lps, "LPS"),
-                                         std::make_pair(WorldSpace::ras, "RAS"),
-                                         std::make_pair(WorldSpace::none, "")));
+                         testing::Values(std::make_pair(Space::lps, "LPS"),
+                                         std::make_pair(Space::ras, "RAS"),
+                                         std::make_pair(Space::none, "")));
 
 /// Writes the second-order sample; the surface file is that of the corners.
 std::vector<std::string> write_second_order(const std::string& folder, const TetMesh& mesh) {
@@ -227,7 +227,7 @@ TEST(ReadbackScript, SeesASwappedLabelAndAMovedPoint) {
 TEST(Gmsh, ChecksBothVersionsWithoutAComplaint) {
   if (run("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "NOT TESTED: gmsh is not installed";
   const std::string folder = testing::TempDir() + "stackmesh_gmsh";
-  write_sample(folder, WorldSpace::lps);
+  write_sample(folder, Space::lps);
   for (const char* name : {"foo.msh", "foo2.msh"}) {
     const std::string log = folder + "/" + name + ".log";
     EXPECT_EQ(run("gmsh '" + folder + "/" + name + "' -check - >'" + log + "' 2>&1"), 0) << read_file(log);
@@ -242,7 +242,7 @@ TEST(Gmsh, ChecksBothVersionsWithoutAComplaint) {
 TEST(Gmsh, KeepsGroupsAndBoundariesWhenItWritesTheFileAgain) {
   if (run("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "NOT TESTED: gmsh is not installed";
   const std::string folder = testing::TempDir() + "stackmesh_gmsh_again";
-  write_sample(folder, WorldSpace::lps);
+  write_sample(folder, Space::lps);
   ASSERT_EQ(run("cd '" + folder + "' && gmsh foo.msh -save -format msh41 -o again.msh >again.log 2>&1"), 0)
       << read_file(folder + "/again.log");
   const std::string text = read_file(folder + "/again.msh");

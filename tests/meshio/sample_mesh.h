@@ -81,7 +81,7 @@ inline TetMesh second_order(TetMesh mesh) {
 inline TetMesh second_order_sample(int n = 4) { return second_order(sample_mesh(n)); }
 
 inline InterfaceComplex sample_surface(const TetMesh& mesh) {
-  return {mesh.points, mesh.faces};
+  return {mesh.points, mesh.faces, mesh.space};
 }
 
 inline std::vector<LabelInfo> sample_labels() {

@@ -24,7 +24,7 @@ TEST(TriangleValues, AreThoseOfTheTetBehind) {
     SetOptions options;
     if (parts) options.parts = {{"A", {1, 3}}, {"B", {2}}};
     SolverModel model = name_sets(blocks::block(3, 2, 2, {1, 1, 1}, [](int i, int, int) { return i + 1; }), {}, options);
-    assign_materials(model, nullptr, nullptr, {});
+    assign_materials(model, nullptr, nullptr);
     for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) model.sets.modulus_mpa[t] = 100.0 + static_cast<double>(t);
     const std::string path = (std::filesystem::temp_directory_path() / ("triangle_values_" + std::to_string(::getpid()) + ".vtu")).string();
     AtomicFiles files;

@@ -36,8 +36,9 @@ std::string written_volume(const std::string& ending, const TetMesh& mesh, const
 }
 
 /// A unit tetrahedron of label 2, given with its triangles wound inward (from the background into the label).
-TetMesh one_tet() {
+TetMesh one_tet(Space space = Space::lps) {
   TetMesh mesh;
+  mesh.space = space;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.tets = {{0, 1, 2, 3}};
   mesh.labels = {2};
@@ -94,15 +95,12 @@ TEST(WriteSurface, StlHoldsTheLengthTheMarkAndUnitNormalsOutward) {
 }
 
 TEST(WriteSurface, StlMarksRasAndLeavesTheMarkOutWithoutAnatomy) {
-  MeshWriteOptions options;
-  options.space = WorldSpace::ras;
-  EXPECT_NE(written_surface(".stl", sample_surface(one_tet()), options).find("SPACE=RAS"), std::string::npos);
-  options.space = WorldSpace::none;
+  EXPECT_NE(written_surface(".stl", sample_surface(one_tet(Space::ras)), {}).find("SPACE=RAS"), std::string::npos);
   for (const char* ending : {".stl", ".ply", ".obj", ".off", ".vtp"})
-    EXPECT_EQ(written_surface(ending, sample_surface(one_tet()), options).find("SPACE"), std::string::npos)
+    EXPECT_EQ(written_surface(ending, sample_surface(one_tet(Space::none)), {}).find("SPACE"), std::string::npos)
         << ending;
   for (const char* ending : {".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh"})
-    EXPECT_EQ(written_volume(ending, one_tet(), options).find("SPACE"), std::string::npos) << ending;
+    EXPECT_EQ(written_volume(ending, one_tet(Space::none), {}).find("SPACE"), std::string::npos) << ending;
 }
 
 TEST(WriteSurface, EveryFormatSaysItsSpace) {

@@ -1,4 +1,5 @@
 // The page: what is packed comes out again, nothing of the input can act as HTML, and the file stays small.
+#include "model/space.h"
 #include "report/html_report.h"
 
 #include <gtest/gtest.h>
@@ -26,6 +27,7 @@ struct TwoBoxes {
     fill(volume, {2, 2, 2}, {6, 7, 6}, 3);
     fill(volume, {6, 2, 2}, {10, 7, 6}, 7);
     surface = voxel_surface(volume);
+    surface.space = Space::lps;
   }
   HtmlScene scene() const {
     HtmlScene s;
@@ -97,11 +99,11 @@ TEST(HtmlReport, TheUnpackedTetsHaveTheVolumeOfEachLabel) {
         }
   const InterfaceComplex surface = box({0, 0, 0}, {8, 8, 8}, 1);
   InterfaceComplex both = surface;
+  both.space = Space::none;
   add_box(both, {1, 1, 1}, {2, 2, 2}, 2, 1);
   HtmlScene scene;
   scene.surface = &both;
   scene.mesh = &tets;
-  scene.space = "none";
   const std::string html = page(scene, plain_report());
   const Mesh m = mesh(html, 0, "tets");
   ASSERT_EQ(m.elements.size(), tets.tets.size());
@@ -211,11 +213,11 @@ TEST(HtmlReport, ContoursAreDrawnAsTheyAre) {
     s.edges = {{0, 1, 4, 0}, {1, 2, 4, 0}, {2, 3, 4, 0}, {3, 0, 4, 0}};
     stack.sections.push_back(s);
   }
-  const InterfaceComplex surface = box({0, 0, 0}, {10, 6, 20}, 4);
+  InterfaceComplex surface = box({0, 0, 0}, {10, 6, 20}, 4);
+  surface.space = Space::none;
   HtmlScene scene;
   scene.surface = &surface;
   scene.sections = &stack;
-  scene.space = "none";
   const Json pictures = [&] {
     const std::string html = page(scene, plain_report("wall.cnt"));
     const Json p = page_data(html)["meshes"][0]["pictures"];
@@ -254,7 +256,7 @@ TEST(HtmlReport, NothingOfTheInputCanActAsHtml) {
   boxes.volume.labels[3].name = evil;
   RunReport r = plain_report("/data/" + evil + ".nii.gz");
   r.options = {{evil, evil}};
-  r.warnings = {evil};
+  r.warnings = {{WarningCode::other, "", evil}};
   r.input.kind = evil;
   LabelReport row;
   row.label = 3;
@@ -318,10 +320,8 @@ TEST(HtmlReport, ListsDefectsWithTheirPlaceInThePicturesFrame) {
     d.section = 11;
     d.text = "two <sheets> cross";
     r.defects = {d};
-    if (ras)
-      for (Vec3& p : boxes.surface.points) p = {-p.x, -p.y, p.z};
+    if (ras) change_space(boxes.surface, Space::ras);
     HtmlScene scene = boxes.scene();
-    scene.space = ras ? "ras" : "lps";
     const std::string html = page(scene, r);
     EXPECT_NE(html.find(ras ? "data-at=\"[-4,5,6]\"" : "data-at=\"[4,-5,6]\""), std::string::npos);
     EXPECT_NE(html.find("two &lt;sheets&gt; cross"), std::string::npos);
@@ -351,10 +351,10 @@ TEST(HtmlReport, ComparesSeveralMeshesAndMarksTheBest) {
 }
 
 TEST(HtmlReport, WithoutLabelsPlanesAreSpreadOverTheMesh) {
-  const InterfaceComplex b = box({1, 2, 3}, {4, 6, 9}, 2);
+  InterfaceComplex b = box({1, 2, 3}, {4, 6, 9}, 2);
+  b.space = Space::none;
   HtmlScene scene;
   scene.surface = &b;
-  scene.space = "none";
   const std::string html = page(scene, plain_report());
   const Json pictures = page_data(html)["meshes"][0]["pictures"];
   ASSERT_EQ(pictures["planes"].size(), 60u);
@@ -365,7 +365,7 @@ TEST(HtmlReport, WithoutLabelsPlanesAreSpreadOverTheMesh) {
 
 TEST(HtmlReport, NamesThatAreNotUtf8DoNotBreakThePage) {
   RunReport r = plain_report("caf\xe9.nii.gz");
-  r.warnings = {"\xff\xfe"};
+  r.warnings = {{WarningCode::other, "", "\xff\xfe"}};
   const std::string html = page(TwoBoxes().scene(), r);
   EXPECT_NE(html.find("caf\xef\xbf\xbd.nii.gz"), std::string::npos);
   EXPECT_EQ(html.find('\xff'), std::string::npos);
@@ -472,7 +472,8 @@ TEST(HtmlReport, HistogramsCountEveryAngleAndEdge) {
 
 TEST(HtmlReport, AnEmptyMeshStillMakesAPage) {
   const TwoBoxes boxes;
-  const InterfaceComplex nothing;
+  InterfaceComplex nothing;
+  nothing.space = Space::lps;
   HtmlScene scene = boxes.scene();
   scene.surface = &nothing;
   const std::string html = page(scene, plain_report());

@@ -17,7 +17,7 @@ namespace {
 
 using namespace testing_support;
 
-std::vector<std::string> unheard;  // warnings that no test asks for
+std::vector<Warning> unheard;  // warnings that no test asks for
 
 ContourPolygon circle(double x, double y, double radius, int points = 120) {
   ContourPolygon p;
@@ -32,7 +32,7 @@ ContourPolygon circle(double x, double y, double radius, int points = 120) {
 double share_of_circle(int points = 120) { return std::sin(2 * M_PI / points) * points / (2 * M_PI); }
 
 Stack stack_of(const std::vector<LabelContours>& files) {
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   return sections_from_contours(files, warnings);
 }
 

@@ -41,7 +41,7 @@ struct Made {
   Stack stack;
   StitchResult result;
   SurfaceCheck check;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   std::array<double, 2> heights(Label label) const {
     std::array<double, 2> z = {1e300, -1e300};
     for (const InterfaceTriangle& t : result.complex.triangles)
@@ -79,7 +79,7 @@ Made make(const std::vector<LabelContours>& files, ContourStackOptions options =
 
 TEST(DrawnDetail, APixelComesFromWhatWasDrawnNotFromLongEdges) {
   const auto pixel = [](const std::function<std::vector<ContourPolygon>(double)>& at) {
-    std::vector<std::string> w;
+    std::vector<Warning> w;
     return sections_from_contours({file_of(1, {0, 3, 6}, at)}, w).pixel_mm;
   };
   EXPECT_NEAR(pixel([](double) { return std::vector{box(-50, -50, 50, 50)}; }), 100.0 / 24, 0.01);
@@ -114,8 +114,8 @@ TEST(DrawnCopies, CountOnceHoweverTheyAreWritten) {
       EXPECT_NEAR(m.volume(1), volume, 0.005 * volume) << which << " " << where;
       EXPECT_EQ(surface_of(m.check, 1).components, 1);
       ASSERT_EQ(m.warnings.size(), 1u) << which;
-      EXPECT_NE(m.warnings[0].find("repeats"), std::string::npos) << m.warnings[0];
-      EXPECT_TRUE(where != 3 || m.warnings[0].find("z = 9 mm") != std::string::npos) << m.warnings[0];
+      EXPECT_NE(m.warnings[0].text.find("repeats"), std::string::npos) << m.warnings[0].text;
+      EXPECT_TRUE(where != 3 || m.warnings[0].text.find("z = 9 mm") != std::string::npos) << m.warnings[0].text;
     }
 }
 
@@ -186,7 +186,7 @@ TEST(DrawnEnds, PlaneCutsEndFlatOnThemselvesInAnyCompany) {
 
 TEST(DrawnEnds, EitherEndHasItsOwnCap) {
   const auto a = [](double) { return std::vector{disc(0, 0, 10)}; };
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Stack stack = sections_from_contours({file_of(1, every(4, 5), a)}, warnings);
   StitchOptions o;
   o.label_caps[1] = {Caps::round, Caps::flat};
@@ -255,7 +255,7 @@ TEST(NestedStacks, WhatLiesInsideStaysInside) {
     const Caps caps = seed % 2 ? Caps::round : Caps::flat;
     const std::optional<int> per_gap = seed % 3 == 0 ? std::optional<int>() : std::optional<int>(static_cast<int>(seed % 3) - 1);
     const Made m = make(files, {}, per_gap, caps);
-    ASSERT_TRUE(m.warnings.empty()) << "seed " << seed << ": " << m.warnings[0];
+    ASSERT_TRUE(m.warnings.empty()) << "seed " << seed << ": " << m.warnings[0].text;
     const double low = files[0].sections.front().z_mm, high = files[0].sections.back().z_mm;
     if (!one_file)
       for (const InterfaceTriangle& t : m.result.complex.triangles) {

@@ -63,7 +63,7 @@ std::string problem_of(const LabelVolume& volume, std::uint64_t seed, bool fille
 
 std::string problem_of_contours(std::uint64_t seed, bool filled) {
   try {
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     Monitor quiet;
     Stack stack = sections_from_contours(random_contours(seed), warnings);
     return problem_of(stitch_sections(stack, options_for(seed), quiet).complex, filled);

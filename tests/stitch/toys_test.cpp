@@ -36,7 +36,7 @@ LabelContours label_of(Label label, const std::vector<std::vector<ContourPolygon
 }
 
 StitchResult stitch_contours(const std::vector<LabelContours>& files, const StitchOptions& options = {}) {
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Monitor quiet;
   Stack stack = sections_from_contours(files, warnings);
   return stitch_sections(stack, options, quiet);
@@ -245,7 +245,7 @@ TEST(SnapRounding, EightHundredNearCopiesKeepABoundedNumberOfVertices) {
     for (int i = 0; i < kPoints; ++i) p.points[i][0] += 1e-4 * std::sin(12.9898 * (k * kPoints + i));
     sections.push_back({p});
   }
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Stack stack = sections_from_contours({label_of(1, sections, 1)}, warnings);
   snap_round(stack, 0);
   for (const Section& s : stack.sections) EXPECT_LE(s.points.size(), 6u * kPoints);

@@ -21,6 +21,7 @@ using stackmesh::Vec3;
 /// nx * ny * nz cells of six tets each; label(i, j, k) 0 leaves a cell out.
 inline TetMesh block(int nx, int ny, int nz, Vec3 cell, const std::function<Label(int, int, int)>& label = [](int, int, int) { return 1; }) {
   TetMesh mesh;
+  mesh.space = stackmesh::Space::lps;
   const auto id = [=](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)

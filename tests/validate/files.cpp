@@ -19,10 +19,10 @@ struct Folder {
   }
 };
 
-MeshWriteOptions options(const std::string& space) {
-  MeshWriteOptions o;
-  o.space = space == "lps" ? WorldSpace::lps : space == "ras" ? WorldSpace::ras : WorldSpace::none;
-  return o;
+template <class Mesh>
+Mesh marked(Mesh mesh, const std::string& space) {
+  mesh.space = space == "lps" ? Space::lps : space == "ras" ? Space::ras : Space::none;
+  return mesh;
 }
 
 }  // namespace
@@ -56,14 +56,14 @@ std::string write_volume_file(const std::string& name, const LabelVolume& v) {
 
 std::string write_mesh_file(const std::string& name, const InterfaceComplex& surface, const std::string& space) {
   AtomicFiles files;
-  write_surface(files, folder() + "/" + name, surface, options(space));
+  write_surface(files, folder() + "/" + name, marked(surface, space));
   files.commit();
   return folder() + "/" + name;
 }
 
 std::string write_mesh_file(const std::string& name, const TetMesh& mesh, const std::string& space) {
   AtomicFiles files;
-  write_volume(files, folder() + "/" + name, mesh, options(space));
+  write_volume(files, folder() + "/" + name, marked(mesh, space));
   files.commit();
   return folder() + "/" + name;
 }

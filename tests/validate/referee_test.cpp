@@ -335,7 +335,7 @@ TEST_F(Referee, OtherNumbersAreMatchedByOverlapAndSaid) {
   mesh.faces = faces_of_tets(mesh);
   const RunReport r = judged(mesh, "numbers.msh");
   EXPECT_EQ(exit_code(r.verdicts), 0);
-  EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(), [](const std::string& w) { return w.find("41 as 1") != std::string::npos && w.find("42 as 2") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(), [](const Warning& w) { return w.text.find("41 as 1") != std::string::npos && w.text.find("42 as 2") != std::string::npos; }));
 }
 
 TEST_F(Referee, MeshesSideBySideAndWithoutLabels) {

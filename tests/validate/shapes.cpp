@@ -19,12 +19,14 @@ void add_box(InterfaceComplex& complex, Vec3 low, Vec3 high, Label label, Label 
 
 InterfaceComplex box(Vec3 low, Vec3 high, Label label) {
   InterfaceComplex c;
+  c.space = Space::lps;
   add_box(c, low, high, label);
   return c;
 }
 
 InterfaceComplex weld(const InterfaceComplex& complex) {
   InterfaceComplex out;
+  out.space = Space::lps;
   std::map<std::array<double, 3>, std::int32_t> numbers;
   std::vector<std::int32_t> to;
   for (const Vec3& p : complex.points) {
@@ -66,6 +68,7 @@ InterfaceComplex icosphere(double radius, int level, Label label, Vec3 centre) {
     for (Vec3& p : points) p = (1 / norm(p)) * p;
   }
   InterfaceComplex out;
+  out.space = Space::lps;
   for (const Vec3& p : points) out.points.push_back(centre + (radius / norm(p)) * p);
   for (const auto& f : faces) out.triangles.push_back({f, label, 0});
   return out;
@@ -73,6 +76,7 @@ InterfaceComplex icosphere(double radius, int level, Label label, Vec3 centre) {
 
 InterfaceComplex voxel_surface(const LabelVolume& volume) {
   InterfaceComplex out;
+  out.space = Space::lps;
   std::map<std::array<int, 3>, std::int32_t> numbers;
   const auto label = [&](std::array<int, 3> v) -> Label {
     for (int k = 0; k < 3; ++k)
@@ -122,6 +126,7 @@ void fill(LabelVolume& volume, std::array<int, 3> low, std::array<int, 3> high, 
 
 TetMesh two_tets() {
   TetMesh m;
+  m.space = Space::lps;
   m.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
   m.tets = {{0, 1, 2, 3}, {0, 2, 1, 4}};
   m.labels = {1, 2};

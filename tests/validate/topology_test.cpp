@@ -74,7 +74,7 @@ TEST(Topology, HolesOfAStitchedWallAreCountedAndFound) {
     outer.sections.push_back({8.0 * k, {disc(4 * k, 20)}});
     inner.sections.push_back({8.0 * k, {disc(4 * k, 18.5)}});
   }
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Stack stack = sections_from_contours({outer, inner}, warnings);
   const Stack drawn = stack;
   Monitor quiet;
