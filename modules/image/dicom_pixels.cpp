@@ -1,7 +1,5 @@
 #include "image/dicom_pixels.h"
 
-#include <itkGDCMImageIO.h>
-#include <itkObject.h>
 #include <stdlib.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/installed_part.h"
 #include "base/memory.h"
 #include "image/dicom_dataset.h"
 #include "image/quiet.h"
@@ -100,36 +99,13 @@ class TemporaryFile {
   std::optional<RemovedOnSignals> guard_;
 };
 
-template <class T>
-std::vector<double> copy(const std::vector<char>& bytes, std::size_t count) {
-  if (bytes.size() < count * sizeof(T)) throw std::length_error("too few bytes");
-  const T* p = reinterpret_cast<const T*>(bytes.data());
-  return std::vector<double>(p, p + count);
-}
-
 std::vector<double> decode_with_gdcm(const std::string& path, std::size_t count) {
+  using Decode = int(const char*, std::size_t, double*);
+  const auto decode = reinterpret_cast<Decode*>(function_of_part("stackmesh-gdcm", "stackmesh_decode_with_gdcm", "compressed DICOM images"));
   const Quiet quiet;
-  itk::Object::GlobalWarningDisplayOff();
-  const auto io = itk::GDCMImageIO::New();
-  io->SetFileName(path);
-  io->ReadImageInformation();
-  if (io->GetNumberOfComponents() != 1 || io->GetImageSizeInPixels() != static_cast<itk::ImageIOBase::SizeType>(count))
-    throw std::length_error("another size than the header's");
-  std::vector<char> bytes(io->GetImageSizeInBytes());
-  itk::ImageIORegion region(io->GetNumberOfDimensions());
-  for (unsigned d = 0; d < io->GetNumberOfDimensions(); ++d) region.SetSize(d, io->GetDimensions(d));
-  io->SetIORegion(region);
-  io->Read(bytes.data());
-  using Type = itk::IOComponentEnum;
-  switch (io->GetComponentType()) {
-    case Type::UCHAR: return copy<unsigned char>(bytes, count);
-    case Type::CHAR: return copy<signed char>(bytes, count);
-    case Type::USHORT: return copy<unsigned short>(bytes, count);
-    case Type::SHORT: return copy<short>(bytes, count);
-    case Type::UINT: return copy<unsigned int>(bytes, count);
-    case Type::INT: return copy<int>(bytes, count);
-    default: throw std::invalid_argument("voxel type");
-  }
+  std::vector<double> values(count);
+  if (decode(path.c_str(), count, values.data()) != 0) throw std::runtime_error("GDCM cannot decode it");
+  return values;
 }
 
 /// Compressed pixels, in a file that holds them and what describes them.
@@ -155,7 +131,7 @@ std::vector<double> decode_compressed(DcmFileFormat& file, std::size_t count, co
     return decode_with_gdcm(alone.path(), count);
   } catch (const Error&) {
     throw;
-  } catch (const std::exception&) {  // GDCM's texts hold source lines, nothing for users
+  } catch (const std::exception&) {
     fail_input("the image is damaged, or its pixels are stored as " + transfer_syntax_of(file) + ", which cannot be decoded", path,
                "convert it to an uncompressed transfer syntax, with gdcmconv --raw or dcmdjpeg");
   }

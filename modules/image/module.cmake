@@ -19,8 +19,9 @@ stackmesh_module(image COMPONENT Io
           dicom_segmentation.cpp dicom_series.cpp dicom_pixels.cpp read_structure_set.cpp segments.cpp slicer_segments.cpp text_header.cpp
   HEADERS read_labels.h read_label_table.h read_image.h read_contours.h read_structure_set.h dicom_file.h dicom_series.h
   USES base model
-  PRIVATE ${ITK_LIBRARIES} ZLIB::ZLIB TIFF::TIFF DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
-target_include_directories(stackmesh_image SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+  PRIVATE ZLIB::ZLIB TIFF::TIFF DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
+stackmesh_part(stackmesh-gdcm OF image SOURCES parts/gdcm_part.cpp PRIVATE ${ITK_LIBRARIES})
+target_include_directories(stackmesh-gdcm SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # Debian's ITK headers know no compiler but GCC
-  set_source_files_properties(image/dicom_pixels.cpp PROPERTIES COMPILE_OPTIONS "-U__clang__;-fgnuc-version=9.1.0")
+  set_source_files_properties(image/parts/gdcm_part.cpp PROPERTIES COMPILE_OPTIONS "-U__clang__;-fgnuc-version=9.1.0")
 endif()

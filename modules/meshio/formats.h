@@ -27,4 +27,7 @@ void write_med(std::FILE* file, const PreparedMesh& mesh);
 // By a library that opens the file itself. @throws Error(output)
 void write_exodus(const std::string& path, const PreparedMesh& mesh);
 
+// @throws Error(no_result) where the part that writes .exo and .med is not installed
+void require_hdf5_writers();
+
 }  // namespace stackmesh

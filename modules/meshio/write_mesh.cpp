@@ -79,6 +79,10 @@ bool is_surface_format(const std::string& path) {
 bool is_volume_format(const std::string& path) {
   return find_format(kVolumeFormats, path) != nullptr;
 }
+void require_writer(const std::string& path) {
+  const Format* format = find_format(kVolumeFormats, path);
+  if (format != nullptr && (format->by_name == write_exodus || format->to_stream == write_med)) require_hdf5_writers();
+}
 std::string surface_endings() { return endings_of(kSurfaceFormats); }
 std::string volume_endings() { return endings_of(kVolumeFormats); }
 

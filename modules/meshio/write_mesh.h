@@ -20,6 +20,9 @@ struct MeshWriteOptions {
 bool is_surface_format(const std::string& path);
 /// True for .vtu .msh .inp .feb .bdf .cdb .k .exo .med .vtk .mesh, in any letter case.
 bool is_volume_format(const std::string& path);
+/// Asks before a long run whether the path's format can be written: .exo and .med have their writers in a part of their own (base/installed_part.h).
+/// @throws Error(no_result) where that part is absent; any other ending passes
+void require_writer(const std::string& path);
 /// The endings of either, for messages.
 std::string surface_endings();
 std::string volume_endings();

@@ -39,7 +39,10 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
     for (const std::string& input : inputs)
       if (is_one_file(outputs[i], file_of(input))) fail_usage("an output would replace an input", "'" + outputs[i] + "'", "give the output a name of its own");
   }
-  for (const std::string& path : outputs) AtomicFiles::check(path);
+  for (const std::string& path : outputs) {
+    AtomicFiles::check(path);
+    require_writer(path);
+  }
 }
 
 void check_mesh_outputs(const MeshRunOptions& o) {

@@ -3,8 +3,7 @@ stackmesh_module(volume
   SOURCES best_place.cpp compact.cpp fill_volume.cpp find_worker.cpp grow_layers.cpp layer_columns.cpp layer_levels.cpp improve_mesh.cpp improve_moves.cpp improve_pieces.cpp improve_tets.cpp label_tets.cpp orientation.cpp raise_order.cpp refine_tets.cpp relax_surface.cpp surface_curves.cpp tetgen_words.cpp worker_process.cpp
   HEADERS fill_volume.h grow_layers.h raise_order.h refine_tets.h
   USES base model
-  PRIVATE CGAL::CGAL ${CMAKE_DL_LIBS})
-target_compile_definitions(stackmesh_volume PRIVATE STACKMESH_LIBEXEC="${CMAKE_INSTALL_FULL_LIBEXECDIR}/stackmesh")
+  PRIVATE CGAL::CGAL)
 add_library(stackmesh_tetgen STATIC volume/worker/tetgen_worker.cpp)
 target_include_directories(stackmesh_tetgen PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} PRIVATE ${TETGEN_INCLUDE})
 target_link_libraries(stackmesh_tetgen PUBLIC stackmesh_model PRIVATE ${TETGEN_LIBRARY})

@@ -1,4 +1,4 @@
-#include "meshio/hdf5_times.h"
+#include "meshio/parts/hdf5_times.h"
 
 #include <array>
 #include <cstdint>

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "meshio/formats.h"
-#include "meshio/hdf5_times.h"
+#include "meshio/parts/hdf5_times.h"
 #include "meshio/output_buffer.h"
 
 namespace stackmesh {
