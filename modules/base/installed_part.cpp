@@ -32,11 +32,13 @@ void* load(const std::string& part, const std::string& purpose) {
   const char* const folder = std::getenv("STACKMESH_PARTS");
   const std::string path = folder != nullptr && *folder != '\0' ? (fs::path(folder) / name).string() : find_installed(name, R_OK);
   const auto fail = [&](const std::string& why) { throw Error(ErrorKind::no_result, "the part of stackmesh for " + purpose + " " + why, path.empty() ? name : path, again); };
-  if (path.empty()) fail("is not installed");
+  if (path.empty() || ::access(path.c_str(), R_OK) != 0) fail("is not installed");
   void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     const char* const text = ::dlerror();
-    fail(std::string("cannot be loaded (") + (text != nullptr ? text : "unknown reason") + ")");
+    std::string why = text != nullptr ? text : "unknown reason";
+    if (why.compare(0, path.size() + 2, path + ": ") == 0) why.erase(0, path.size() + 2);  // the error names it anyway
+    fail("cannot be loaded (" + why + ")");
   }
   using Version = const char* (*)();
   const auto version = reinterpret_cast<Version>(::dlsym(handle, "stackmesh_part_version"));
