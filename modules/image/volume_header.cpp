@@ -1,9 +1,10 @@
-// NIfTI-1 and GIPL, whose headers are binary; what all headers share.
+// NIfTI-1, NIfTI-2 and GIPL, whose headers are binary; what all headers share.
 #include "image/volume_header.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
 #include "base/error.h"
@@ -64,6 +65,15 @@ bool nifti_type(int datatype, VoxelType& type) {
 
 using Form = std::array<Vec3, 4>;  // three columns and the origin, LPS, in the file's unit
 
+/// Where the fields of a header are: of NIfTI-1 (nifti1.h), whose sizes and codes are 16 bits wide and whose numbers are floats, and of NIfTI-2 (nifti2.h), whose sizes are
+/// 64 bits wide, whose codes are 32, and whose numbers are doubles.
+struct NiftiLayout {
+  bool wide;
+  std::size_t bytes, magic, type, sizes, pixdim, voxels, slope, intercept, units, qform_code, sform_code, quaternion, offset, rows;
+};
+constexpr NiftiLayout kNifti1 = {false, 348, 344, 70, 40, 76, 108, 112, 116, 123, 252, 254, 256, 268, 280};
+constexpr NiftiLayout kNifti2 = {true, 540, 4, 12, 16, 104, 168, 176, 184, 500, 344, 348, 352, 376, 400};
+
 class NiftiReader {
  public:
   explicit NiftiReader(const std::string& path) : path_(path) {}
@@ -72,56 +82,68 @@ class NiftiReader {
     open();
     read_sizes();
     read_scaling();
-    unit_mm_ = (h_[123] & 7) == 1 ? 1e3 : (h_[123] & 7) == 3 ? 1e-3 : 1;
+    const int unit = (at_.wide ? number_at<std::int32_t>(h_, at_.units, swap_) : h_[at_.units]) & 7;
+    unit_mm_ = unit == 1 ? 1e3 : unit == 3 ? 1e-3 : 1;
     read_forms();
     return std::move(header_);
   }
 
  private:
-  double real(std::size_t offset) const { return number_at<float>(h_, offset, swap_); }
-  int whole(std::size_t offset) const { return number_at<std::int16_t>(h_, offset, swap_); }
+  /// The i-th of the numbers from a field on.
+  double real(std::size_t field, int i = 0) const {
+    return at_.wide ? number_at<double>(h_, field + 8 * static_cast<std::size_t>(i), swap_) : number_at<float>(h_, field + 4 * static_cast<std::size_t>(i), swap_);
+  }
+  std::int64_t size(int i) const {
+    return at_.wide ? number_at<std::int64_t>(h_, at_.sizes + 8 * static_cast<std::size_t>(i), swap_) : number_at<std::int16_t>(h_, at_.sizes + 2 * static_cast<std::size_t>(i), swap_);
+  }
+  int form_code(std::size_t field) const { return at_.wide ? number_at<std::int32_t>(h_, field, swap_) : number_at<std::int16_t>(h_, field, swap_); }
 
   void open() {
     bool compressed = false;
-    h_ = read_start(path_, 352, compressed);
+    h_ = read_start(path_, 544, compressed);
     if (h_.size() < 348) damaged("the file is truncated: no complete NIfTI header", path_);
     const auto is_size = [&](std::int32_t size, bool swapped) { return number_at<std::int32_t>(h_, 0, swapped) == size; };
-    if (is_size(540, false) || is_size(540, true)) fail_input("NIfTI-2 files are not read", path_, "convert the labels to NIfTI-1 (.nii.gz) or NRRD");
-    if (is_size(348, true)) swap_ = true;
-    else if (!is_size(348, false)) damaged("this is no NIfTI file, or its header is damaged", path_);
-    if (std::memcmp(h_.data() + 344, "n+1", 4) != 0) damaged("this is no single-file NIfTI-1 volume, or its header is damaged", path_);
+    swap_ = is_size(348, true) || is_size(540, true);
+    if (is_size(540, swap_)) at_ = kNifti2;
+    else if (!is_size(348, swap_)) damaged("this is no NIfTI file, or its header is damaged", path_);
+    if (h_.size() < at_.bytes) damaged("the file is truncated: no complete NIfTI header", path_);
+    // The end of the mark of NIfTI-2 tells a transfer that changed line ends.
+    const bool marked = at_.wide ? std::memcmp(h_.data() + at_.magic, "n+2\0\r\n\032\n", 8) == 0 : std::memcmp(h_.data() + at_.magic, "n+1", 4) == 0;
+    if (!marked) damaged(std::string("this is no single-file NIfTI-") + (at_.wide ? "2" : "1") + " volume, or its header is damaged", path_);
     header_.data.encoding = compressed ? VoxelEncoding::deflate : VoxelEncoding::raw;
     header_.data.big_endian = swap_ != is_big_endian_machine();
     header_.nan_is_zero = true;
   }
 
   void read_sizes() {
-    const int dims = whole(40);
+    const std::int64_t dims = size(0);
     if (dims < 1 || dims > 7) damaged("the header is damaged or of the wrong byte order: it has " + std::to_string(dims) + " dimensions", path_);
     header_.data.count = 1;
     for (int d = 1; d <= dims; ++d) {
-      const int n = whole(40 + 2 * d);
+      const std::int64_t n = size(d);
       if (n < 1) damaged("the header is damaged or of the wrong byte order: dimension " + std::to_string(d) + " is " + std::to_string(n), path_);
       if (d > 3 && n > 1) fail_input("the image has more than three dimensions", path_, "give one three-dimensional label volume");
-      if (d <= 3) header_.size[d - 1] = n;
+      if (n > std::numeric_limits<std::int32_t>::max()) damaged("the header is damaged: dimension " + std::to_string(d) + " is " + std::to_string(n), path_);
+      if (d <= 3) header_.size[d - 1] = static_cast<int>(n);
+      if (header_.data.count > (std::uint64_t{1} << 50) / static_cast<std::uint64_t>(n)) damaged("the header is damaged: it claims more voxels than any file holds", path_);
       header_.data.count *= static_cast<std::uint64_t>(n);
     }
     if (dims < 2) fail_input("the image has one dimension only", path_, "give a three-dimensional label volume");
-    for (int d = 0; d < std::min(dims, 3); ++d) header_.spacing_mm[d] = real(80 + 4 * d);
+    for (int d = 0; d < 3 && d < dims; ++d) header_.spacing_mm[d] = real(at_.pixdim, 1 + d);
     require_spacing(header_.spacing_mm.data(), 3, path_);
-    const int datatype = whole(70);
+    const int datatype = number_at<std::int16_t>(h_, at_.type, swap_);
     if (!nifti_type(datatype, header_.data.type))
       fail_input("voxels of NIfTI type " + std::to_string(datatype) + " (colour, complex or other) are no labels", path_, "store the labels as whole numbers");
-    const double offset = real(108);
+    const double offset = at_.wide ? static_cast<double>(number_at<std::int64_t>(h_, at_.voxels, swap_)) : real(at_.voxels);
     if (!(offset >= 0 && offset < 1e9)) damaged("the header is damaged: its voxels begin nowhere", path_);
     DataPart part;
     part.path = path_;
-    part.skip = std::max<std::uint64_t>(352, static_cast<std::uint64_t>(offset));  // below 352 the offset means 352
+    part.skip = std::max<std::uint64_t>(at_.bytes + 4, static_cast<std::uint64_t>(offset));  // the least: header and the mark of extensions
     header_.data.parts = {part};
   }
 
   void read_scaling() {
-    const double slope = real(112), intercept = real(116);
+    const double slope = real(at_.slope), intercept = real(at_.intercept);
     if (slope == 0) return;  // "no scaling", whatever the intercept
     if (!std::isfinite(slope) || !std::isfinite(intercept)) {
       header_.warnings.push_back(warning_at(WarningCode::header, path_, "its scaling (scl_slope, scl_inter) is not finite; the stored numbers are taken as they are"));
@@ -131,20 +153,20 @@ class NiftiReader {
     header_.intercept = intercept;
   }
 
-  double checked(std::size_t offset) const {
-    const double value = real(offset);
+  double checked(std::size_t field, int i) const {
+    const double value = real(field, i);
     if (!std::isfinite(value)) damaged("the header is damaged: its orientation is not finite", path_);
     return value;
   }
 
   Form sform() const {
     Form form;
-    for (int c = 0; c < 4; ++c) form[c] = {-checked(280 + 4 * c), -checked(296 + 4 * c), checked(312 + 4 * c)};
+    for (int c = 0; c < 4; ++c) form[c] = {-checked(at_.rows, c), -checked(at_.rows, 4 + c), checked(at_.rows, 8 + c)};
     return form;
   }
 
   Form qform() const {
-    double b = checked(256), c = checked(260), d = checked(264), a = 1 - (b * b + c * c + d * d);
+    double b = checked(at_.quaternion, 0), c = checked(at_.quaternion, 1), d = checked(at_.quaternion, 2), a = 1 - (b * b + c * c + d * d);
     if (a < 1e-7) {
       const double length = std::sqrt(b * b + c * c + d * d);
       b /= length, c /= length, d /= length;
@@ -152,24 +174,24 @@ class NiftiReader {
     } else {
       a = std::sqrt(a);
     }
-    const double qfac = real(76) < 0 ? -1 : 1, x = header_.spacing_mm[0], y = header_.spacing_mm[1], z = qfac * header_.spacing_mm[2];
+    const double qfac = real(at_.pixdim) < 0 ? -1 : 1, x = header_.spacing_mm[0], y = header_.spacing_mm[1], z = qfac * header_.spacing_mm[2];
     const Vec3 u{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)}, v{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
         w{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b};
     const auto lps = [](double s, const Vec3& e) { return Vec3{-s * e.x, -s * e.y, s * e.z}; };
-    return {lps(x, u), lps(y, v), lps(z, w), Vec3{-checked(268), -checked(272), checked(276)}};
+    return {lps(x, u), lps(y, v), lps(z, w), Vec3{-checked(at_.offset, 0), -checked(at_.offset, 1), checked(at_.offset, 2)}};
   }
 
   /// Two orientations that may disagree. As ITK does: the sform holds where its code is 1 or it is alone, else the qform; pixdim
   /// is the voxel size.
   void read_forms() {
-    const bool has_q = whole(252) > 0, has_s = whole(254) > 0;
+    const bool has_q = form_code(at_.qform_code) > 0, has_s = form_code(at_.sform_code) > 0;
     const std::array<double, 3> stored = header_.spacing_mm;
     for (double& s : header_.spacing_mm) s *= unit_mm_;
     if (!has_q && !has_s) {
       header_.warnings.push_back(warning_at(WarningCode::header, path_, "carries no orientation; its axes are taken as left, posterior, superior"));
       return;
     }
-    const bool by_s = has_s && (whole(254) == 1 || !has_q);
+    const bool by_s = has_s && (form_code(at_.sform_code) == 1 || !has_q);
     const Form form = by_s ? sform() : qform();
     if (by_s && !(cosine_error(form) <= 1e-4))  // a zero column gives a NaN
       fail_input("the voxel grid is sheared or its directions (sform) are zero", path_, "resample the labels to a rectangular grid with nearest neighbour");
@@ -198,6 +220,7 @@ class NiftiReader {
 
   const std::string path_;
   std::vector<unsigned char> h_;
+  NiftiLayout at_ = kNifti1;
   bool swap_ = false;
   double unit_mm_ = 1;
   VolumeHeader header_;

@@ -157,6 +157,31 @@ struct Nifti {
     put(344, Bytes("n+1\0", 4));
     return h;
   }
+
+  /// The same as NIfTI-2; voxels begin at byte 544.
+  Bytes header2() const {
+    Bytes h(544, '\0');
+    const auto put = [&](std::size_t offset, const Bytes& bytes) { h.replace(offset, bytes.size(), bytes); };
+    const auto i16 = [&](int v) { return big_endian ? big<std::int16_t>(v) : little<std::int16_t>(v); };
+    const auto i32 = [&](int v) { return big_endian ? big<std::int32_t>(v) : little<std::int32_t>(v); };
+    const auto i64 = [&](std::int64_t v) { return big_endian ? big<std::int64_t>(v) : little<std::int64_t>(v); };
+    const auto f64 = [&](double v) { return big_endian ? big(v) : little(v); };
+    put(0, i32(540));
+    put(4, Bytes("n+2\0\r\n\x1a\n", 8));
+    put(12, i16(datatype));
+    put(14, i16(bits));
+    for (int d = 0; d < 8; ++d) put(16 + 8 * d, i64(dim[d]));
+    for (int d = 0; d < 4; ++d) put(104 + 8 * d, f64(pixdim[d]));
+    put(168, i64(544));
+    put(176, f64(slope));
+    put(184, f64(inter));
+    put(344, i32(qform));
+    put(348, i32(sform));
+    for (int i = 0; i < 6; ++i) put(352 + 8 * i, f64(quatern[i]));
+    for (int i = 0; i < 12; ++i) put(400 + 8 * i, f64(srow[i]));
+    put(500, i32(units));
+    return h;
+  }
 };
 /// Twelve voxels (3 x 2 x 2): x fastest.
 const std::vector<int> twelve = {0, 1, 2, 0, 0, 5, 0, 0, 0, 0, 9, 0};

@@ -39,6 +39,51 @@ TEST_F(ReadImage, AppliesSlopeAndIntercept) {
   for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(v.values[i], 2 * twelve[i] - 1024);
 }
 
+TEST_F(ReadImage, Nifti2IsReadAsNifti1) {
+  for (const bool big_endian : {false, true})
+    for (const bool by_sform : {false, true}) {
+      Nifti n;
+      n.big_endian = big_endian;
+      n.datatype = 4;
+      n.bits = 16;
+      n.pixdim = {-1, 2, 3, 4};
+      n.quatern = {0.5f, 0.5f, 0.5f, 11, 22, 33};
+      n.srow = {0, 3, 0, 10, 2, 0, 0, 20, 0, 0, 4, 30};
+      n.qform = by_sform ? 0 : 1;
+      n.sform = by_sform ? 1 : 0;
+      n.slope = 2;
+      n.inter = -3;
+      n.units = 3;  // micrometres
+      const Bytes voxels = pack<std::int16_t>(twelve, big_endian);
+      const IntensityVolume one = read_image(write("one.nii", n.header() + voxels)), two = read_image(write("two.nii.gz", gzip(n.header2() + voxels)));
+      EXPECT_EQ(two.values, one.values);
+      EXPECT_EQ(two.values[5], 7);
+      EXPECT_EQ(two.size, one.size);
+      for (int d = 0; d < 3; ++d) {
+        EXPECT_NEAR(two.spacing_mm[d], one.spacing_mm[d], 1e-9);
+        EXPECT_NEAR(norm(two.axes[d] - one.axes[d]), 0, 1e-9);
+      }
+      EXPECT_NEAR(norm(two.origin_mm - one.origin_mm), 0, 1e-9);
+      EXPECT_NEAR(two.spacing_mm[2], 0.004, 1e-9);
+    }
+}
+
+TEST_F(ReadImage, DamagedNifti2IsOneClearError) {
+  const Nifti n;
+  const Bytes good = n.header2() + pack<std::uint8_t>(twelve);
+  EXPECT_EQ(read_image(write("good.nii", good)).values.size(), 12u);
+  expect_error([&] { read_image(write("cut.nii", good.substr(0, 500))); }, {"cut.nii", "no complete NIfTI header"});
+  expect_error([&] { read_image(write("short.nii", good.substr(0, 550))); }, {"short.nii"});
+  Bytes ends = good;
+  ends.replace(4, 8, Bytes("n+2\0\n\n\x1a\n", 8));
+  expect_error([&] { read_image(write("ends.nii", ends)); }, {"ends.nii", "NIfTI-2"});
+  for (const std::int64_t size : {std::int64_t{-1}, std::int64_t{1} << 40, std::int64_t{2000000000}}) {
+    Bytes huge = good;
+    for (int d = 1; d < 4; ++d) huge.replace(16 + 8 * d, 8, little<std::int64_t>(size));
+    expect_error([&] { read_image(write("huge.nii", huge)); }, {"huge.nii"});
+  }
+}
+
 TEST_F(ReadImage, SampleIsConstantInTheOuterHalfVoxelAndNoneBeyond) {
   IntensityVolume v;
   v.size = {2, 1, 1};
