@@ -234,21 +234,25 @@ void NastranSteps::vector(const char* card, std::int64_t set, std::int64_t node,
 
 /// On triangles of wedges: G1 a corner of the face; of pyramids: both corners of the base's edge, inwards. On faces of tetrahedra: G1 a corner of the face, G4 the corner that is not on it. A pressure above 0 presses inwards.
 void NastranSteps::pressure(std::int64_t set, const Pressure& p) {
+  // Two corners of the element tell which of its faces: one on it, and the opposite one, or of a pyramid its diagonal one (-1: a wedge needs the first only).
+  const auto card = [&](TetFace f, std::int32_t on, std::int32_t opposite) {
+    out_ << "PLOAD4* ";
+    large(set);
+    large(static_cast<std::int64_t>(f.tet) + 1);
+    large(p.mpa);
+    padded("", 16);
+    out_ << "\n*       ";
+    padded("", 32);
+    large(static_cast<std::int64_t>(on) + 1);
+    if (opposite >= 0) large(static_cast<std::int64_t>(opposite) + 1);
+    out_ << '\n';
+  };
   for (const FaceSet& s : sets_.surfaces) {
     if (s.name != p.set) continue;
     for (const TetFace f : s.faces) {
       if (static_cast<std::size_t>(f.tet) >= mesh_.tets.size()) {
         const auto& wedge = mesh_.wedges[static_cast<std::size_t>(f.tet) - mesh_.tets.size()];
-        out_ << "PLOAD4* ";
-        large(set);
-        large(static_cast<std::int64_t>(f.tet) + 1);
-        large(p.mpa);
-        padded("", 16);
-        out_ << "\n*       ";
-        padded("", 32);
-        large(static_cast<std::int64_t>(wedge[f.face == 0 ? 0 : is_pyramid(wedge) ? 4 : 3]) + 1);
-        if (is_pyramid(wedge)) large(static_cast<std::int64_t>(wedge[f.face == 0 ? 1 : 3]) + 1);
-        out_ << '\n';
+        card(f, wedge[f.face == 0 ? 0 : is_pyramid(wedge) ? 4 : 3], is_pyramid(wedge) ? wedge[f.face == 0 ? 1 : 3] : -1);
         continue;
       }
       const auto& tet = mesh_.tets[f.tet];
@@ -256,16 +260,7 @@ void NastranSteps::pressure(std::int64_t set, const Pressure& p) {
       std::int32_t opposite = -1;
       for (const std::int32_t v : tet)
         if (v != tet[face[0]] && v != tet[face[1]] && v != tet[face[2]]) opposite = v;
-      out_ << "PLOAD4* ";
-      large(set);
-      large(static_cast<std::int64_t>(f.tet) + 1);
-      large(p.mpa);
-      padded("", 16);
-      out_ << "\n*       ";
-      padded("", 32);
-      large(static_cast<std::int64_t>(tet[face[0]]) + 1);
-      large(static_cast<std::int64_t>(opposite) + 1);
-      out_ << '\n';
+      card(f, tet[face[0]], opposite);
     }
   }
 }
