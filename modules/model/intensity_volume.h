@@ -17,7 +17,7 @@ struct IntensityVolume {
   std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< orthonormal, LPS
   std::vector<float> values;          ///< size[0] * size[1] * size[2], in the image's own unit (CT: HU); finite
   std::string kind;                   ///< "nifti", "nrrd", "metaimage", "gipl", ...
-  std::vector<Warning> warnings;  ///< what reading found odd but could mend
+  std::vector<Warning> warnings;      ///< what reading found odd but could mend
 
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;

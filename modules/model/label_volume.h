@@ -30,7 +30,7 @@ struct LabelVolume {
   std::vector<std::uint16_t> voxels;                ///< size[0] * size[1] * size[2]
   std::vector<LabelInfo> labels;                    ///< labels[0] is {0, ""}
   std::string kind;                                 ///< "nifti", "nrrd", "seg.nrrd", "metaimage", "gipl", "slices", "masks", "dicom", "dicomseg"
-  std::vector<Warning> warnings;                ///< what reading found odd but could mend
+  std::vector<Warning> warnings;                    ///< what reading found odd but could mend
 
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
