@@ -5,16 +5,21 @@
 
 namespace stackmesh {
 
-TetMesh tet_mesh_of(const MeshFile& file) {
+TetMesh take_elements(MeshFile& file) {
   TetMesh mesh;
+  mesh.points = std::move(file.points);
+  mesh.tets = std::move(file.tets);
+  mesh.labels = std::move(file.tet_labels);
+  mesh.mid = std::move(file.midside);
+  mesh.wedges = std::move(file.wedges);
+  mesh.wedge_mid = std::move(file.wedge_midside);
+  return mesh;
+}
+
+TetMesh tet_mesh_of(MeshFile file) {
+  TetMesh mesh = take_elements(file);
   mesh.space = file.space.value_or(Space::none);
-  mesh.points = file.points;
-  mesh.tets = file.tets;
-  mesh.labels = file.tet_labels;
-  mesh.mid = file.midside;
-  mesh.wedges = file.wedges;
-  mesh.wedge_mid = file.wedge_midside;
-  mesh.faces = file.triangles.empty() ? faces_of_tets(mesh) : file.triangles;
+  mesh.faces = file.triangles.empty() ? faces_of_tets(mesh) : std::move(file.triangles);
   return mesh;
 }
 

@@ -62,9 +62,12 @@ bool is_readable_mesh(const std::string& path);
 /// numbers.
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
+/// Moves points and elements (with labels and mid-side nodes) out of a file; its triangles and its space stay there.
+TetMesh take_elements(MeshFile& file);
+
 /// The mesh's tets with their interface triangles: those of the file where it has them, else the faces between
 /// tets of different labels.
-TetMesh tet_mesh_of(const MeshFile& file);
+TetMesh tet_mesh_of(MeshFile file);
 
 /// The faces between tets of different labels (0 outside), oriented by the tets; a tet whose nodes run against
 /// most of its neighbours' is turned round first.

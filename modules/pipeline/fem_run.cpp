@@ -173,17 +173,12 @@ class FemRun {
       report.warnings.push_back(warning_at(WarningCode::labels_matched, path, "no cell array holds labels: every element has label 1 (name an array with --label-array)"));
     if (!file.space) report.warnings.push_back(warning_at(WarningCode::frame, path, "does not say its frame; it is taken as LPS"));
     MeshProduct product;
+    product.mesh = take_elements(file);
     product.mesh.space = file.space.value_or(Space::lps);
     written_ = product.mesh.space == Space::none ? Space::none : o_.mesh.space == "ras" ? Space::ras : Space::lps;
     report.input.space = to_text(written_);
     product.up = o_.up;
-    product.mesh.points = std::move(file.points);
     if (product.mesh.space == Space::ras) change_space(product.mesh, Space::lps);  // and back again
-    product.mesh.tets = std::move(file.tets);
-    product.mesh.mid = std::move(file.midside);
-    product.mesh.wedges = std::move(file.wedges);
-    product.mesh.wedge_mid = std::move(file.wedge_midside);
-    product.mesh.labels = std::move(file.tet_labels);
     if (!product.mesh.wedges.empty() && (o_.mesh.mesh.refine > 0 || o_.accuracy_rel))
       fail_usage("the mesh has wedges, and only tetrahedra are cut into eight", path, o_.mesh.mesh.refine > 0 ? "leave --refine out" : "leave --accuracy out");
     const std::set<Label> present(product.mesh.labels.begin(), product.mesh.labels.end());

@@ -117,12 +117,7 @@ class ValidateRun {
       surface_.triangles = std::move(file_.triangles);
       return;
     }
-    tets_.points = std::move(file_.points);
-    tets_.tets = std::move(file_.tets);
-    tets_.labels = std::move(file_.tet_labels);
-    tets_.wedges = std::move(file_.wedges);
-    tets_.wedge_mid = std::move(file_.wedge_midside);
-    tets_.mid = std::move(file_.midside);
+    tets_ = take_elements(file_);
     tets_.faces = std::move(file_.triangles);
     has_faces_ = !tets_.faces.empty();
   }
