@@ -8,7 +8,8 @@
 namespace stackmesh::python {
 namespace {
 
-/// What has no meaning here: a terminal's progress, limits of a whole process, 3D Slicer's file, and the functions' own arguments.
+/// What has no meaning here: a terminal's progress, limits of a whole process, 3D Slicer's file, and the functions' own
+/// arguments.
 const std::set<std::string> kNotHere = {"help", "progress", "quiet", "verbose", "max-memory", "return-parameters"};
 
 void require_nothing(CLI::App& command) {
@@ -59,7 +60,10 @@ std::vector<Keyword> keywords_of(const std::string& name) {
     const bool hidden = o->get_group().empty();  // accepted without effect
     const std::vector<std::string> names = names_of(*o);
     for (std::size_t i = 0; i < names.size(); ++i)
-      keywords.push_back({names[i], kind_of(*o), o->get_default_str(), hidden ? "accepted without effect, as the command line does" : i == 0 ? o->get_description() : "the same as " + names[0]});
+      keywords.push_back({names[i], kind_of(*o), o->get_default_str(),
+                          hidden   ? "accepted without effect, as the command line does"
+                          : i == 0 ? o->get_description()
+                                   : "the same as " + names[0]});
   }
   return keywords;
 }

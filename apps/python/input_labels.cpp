@@ -16,20 +16,28 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 VoxelType type_of(const py::dtype& type, const std::string& name) {
   const char kind = type.kind();
   const auto bytes = type.itemsize();
-  if (kind == 'u') return bytes == 1 ? VoxelType::u8 : bytes == 2 ? VoxelType::u16 : bytes == 4 ? VoxelType::u32 : VoxelType::u64;
-  if (kind == 'i') return bytes == 1 ? VoxelType::i8 : bytes == 2 ? VoxelType::i16 : bytes == 4 ? VoxelType::i32 : VoxelType::i64;
+  if (kind == 'u')
+    return bytes == 1 ? VoxelType::u8 : bytes == 2 ? VoxelType::u16 : bytes == 4 ? VoxelType::u32 : VoxelType::u64;
+  if (kind == 'i')
+    return bytes == 1 ? VoxelType::i8 : bytes == 2 ? VoxelType::i16 : bytes == 4 ? VoxelType::i32 : VoxelType::i64;
   if (kind == 'f' && bytes == 4) return VoxelType::f32;
   if (kind == 'f' && bytes == 8) return VoxelType::f64;
-  fail_input("numbers of type " + std::string(py::str(static_cast<const py::object&>(type))) + " are no labels", name, "give whole numbers from 0");
+  fail_input("numbers of type " + std::string(py::str(static_cast<const py::object&>(type))) + " are no labels", name,
+             "give whole numbers from 0");
 }
 
 }  // namespace
 
-std::shared_ptr<const LabelVolume> volume_of_array(const py::array& labels, const py::object& affine, const py::object& spacing, const py::dict& names, const std::string& name) {
-  if (labels.ndim() != 3) fail_input("the array has " + std::to_string(labels.ndim()) + " dimensions", name, "give one of three: labels[i, j, k]");
+std::shared_ptr<const LabelVolume> volume_of_array(const py::array& labels, const py::object& affine,
+                                                   const py::object& spacing, const py::dict& names,
+                                                   const std::string& name) {
+  if (labels.ndim() != 3)
+    fail_input("the array has " + std::to_string(labels.ndim()) + " dimensions", name,
+               "give one of three: labels[i, j, k]");
   std::array<int, 3> size{};
   for (int d = 0; d < 3; ++d) {
-    if (labels.shape(d) > 1000000) fail_input("the array has more than a million voxels along axis " + std::to_string(d), name, "crop it");
+    if (labels.shape(d) > 1000000)
+      fail_input("the array has more than a million voxels along axis " + std::to_string(d), name, "crop it");
     size[d] = static_cast<int>(labels.shape(d));
   }
   const VoxelType type = type_of(labels.dtype(), name);
@@ -78,7 +86,9 @@ std::shared_ptr<const std::vector<LabelContours>> contours_of_lists(const py::li
         ContourPolygon polygon;
         for (py::ssize_t i = 0; i < points.shape(0); ++i) {
           polygon.points.push_back({points.at(i, 0), points.at(i, 1)});
-          if (!std::isfinite(points.at(i, 0) + points.at(i, 1))) fail_input("a point of a contour is not finite", c.path + ", z = " + std::to_string(made.z_mm), "give finite mm");
+          if (!std::isfinite(points.at(i, 0) + points.at(i, 1)))
+            fail_input("a point of a contour is not finite", c.path + ", z = " + std::to_string(made.z_mm),
+                       "give finite mm");
         }
         made.polygons.push_back(std::move(polygon));
       }

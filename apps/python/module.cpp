@@ -43,7 +43,8 @@ Source source_of_paths(std::vector<std::string> paths) {
   return s;
 }
 
-Source source_of_array(const py::array& labels, const py::object& affine, const py::object& spacing, const py::dict& names, const std::string& name) {
+Source source_of_array(const py::array& labels, const py::object& affine, const py::object& spacing,
+                       const py::dict& names, const std::string& name) {
   Source s;
   s.volume = volume_of_array(labels, affine, spacing, names, name);
   s.name = name;
@@ -58,7 +59,8 @@ Source source_of_contours(const py::list& labels, const std::string& name) {
 }
 
 /// @return the mesh and its report as JSON
-std::pair<std::shared_ptr<MeshData>, std::string> mesh(const Source& source, const Arguments& arguments, bool surface, bool full_report, const py::object& progress) {
+std::pair<std::shared_ptr<MeshData>, std::string> mesh(const Source& source, const Arguments& arguments, bool surface,
+                                                       bool full_report, const py::object& progress) {
   MeshRunOptions options = mesh_options(arguments, surface ? Target::surface : Target::volume);
   source.give_to(options.input);
   options.full_report = full_report;
@@ -66,7 +68,8 @@ std::pair<std::shared_ptr<MeshData>, std::string> mesh(const Source& source, con
   std::string report;
   run_watched(
       [&](Monitor& monitor) {
-        report = to_json(run_mesh(options, monitor, {}, {}, [&](MadeMesh made) { data = std::make_shared<MeshData>(std::move(made)); }));
+        report = to_json(run_mesh(options, monitor, {}, {},
+                                  [&](MadeMesh made) { data = std::make_shared<MeshData>(std::move(made)); }));
       },
       progress);
   return {data, report};
@@ -80,8 +83,10 @@ std::string fem(const Source& source, const Arguments& arguments, const py::obje
   return report;
 }
 
-std::string validate(const std::vector<std::string>& meshes, const Source* against, Arguments arguments, const py::object& progress) {
-  if (against != nullptr) arguments.push_back({"against", "memory"});  // so that the command takes what goes with it; replaced below
+std::string validate(const std::vector<std::string>& meshes, const Source* against, Arguments arguments,
+                     const py::object& progress) {
+  // so that the command takes what goes with it; replaced below
+  if (against != nullptr) arguments.push_back({"against", "memory"});
   ValidateRunOptions options = validate_options(meshes, arguments);
   if (against != nullptr) against->give_to(*options.against);
   std::string report;
@@ -108,13 +113,20 @@ std::string info(const Source& source, const std::string& spacing, const std::st
 
 const char* name_of(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::usage: return "usage";
-    case ErrorKind::input: return "input";
-    case ErrorKind::no_result: return "no_result";
-    case ErrorKind::output: return "output";
-    case ErrorKind::outside_limits: return "outside_limits";
-    case ErrorKind::cancelled: return "cancelled";
-    case ErrorKind::internal: break;
+    case ErrorKind::usage:
+      return "usage";
+    case ErrorKind::input:
+      return "input";
+    case ErrorKind::no_result:
+      return "no_result";
+    case ErrorKind::output:
+      return "output";
+    case ErrorKind::outside_limits:
+      return "outside_limits";
+    case ErrorKind::cancelled:
+      return "cancelled";
+    case ErrorKind::internal:
+      break;
   }
   return "internal";
 }
@@ -153,7 +165,9 @@ PYBIND11_MODULE(_stackmesh, m) {
                              [](const MeshData& d) {
                                py::dict colours;
                                for (const LabelInfo& l : d.labels())
-                                 if (l.colour) colours[py::int_(l.number)] = py::make_tuple((*l.colour)[0], (*l.colour)[1], (*l.colour)[2]);
+                                 if (l.colour)
+                                   colours[py::int_(l.number)] =
+                                       py::make_tuple((*l.colour)[0], (*l.colour)[1], (*l.colour)[2]);
                                return colours;
                              })
       .def("points", &MeshData::points)

@@ -45,7 +45,8 @@ class WatchedMonitor : public Monitor {
     if (!told_) return;
     std::lock_guard<std::mutex> lock(mutex_);
     if (begins) stage_ = stage;
-    if (!begins && !events_.empty() && events_.back().stage == stage_) events_.back().done = done;  // only the latest share of a stage counts
+    // only the latest share of a stage counts
+    if (!begins && !events_.empty() && events_.back().stage == stage_) events_.back().done = done;
     else events_.push_back({stage_, done});
   }
 

@@ -32,25 +32,41 @@ struct BatchArguments {
   std::string manifest, inputs, folder, formats, only, memory, case_memory, slurm, task;
   int jobs = 0, retries = 0, cases_per_task = 1;
   double timeout_s = 0;
-  bool dry_run = false, json = false, status = false, no_page = false, quiet = false, uses_slurm = false;  // the text may be empty
+  // the text may be empty
+  bool dry_run = false, json = false, status = false, no_page = false, quiet = false, uses_slurm = false;
   std::vector<std::string> case_words;
 };
 
 void add_options(CLI::App& command, BatchArguments& a) {
-  command.add_option("MANIFEST", a.manifest, "CSV or TSV with the columns id, input and any long option by its name; or a folder in the layout of BIDS derivatives");
-  command.add_option("-o,--output", a.folder, "folder of the cohort: a folder for each case, and cohort.html")->required();
-  command.add_option("--inputs", a.inputs, "quoted glob of inputs in place of a manifest: 'sub-*/anat/*_dseg.nii.gz'; relative to the folder MANIFEST, if one is given");
-  command.add_option("--format", a.formats, "endings of the meshes of each case: vtu,stl (default: vtu; of surface stl; of fem inp)");
+  command.add_option("MANIFEST", a.manifest,
+                     "CSV or TSV with the columns id, input and any long option by its name; or a folder in the layout "
+                     "of BIDS derivatives");
+  command.add_option("-o,--output", a.folder, "folder of the cohort: a folder for each case, and cohort.html")
+      ->required();
+  command.add_option("--inputs", a.inputs,
+                     "quoted glob of inputs in place of a manifest: 'sub-*/anat/*_dseg.nii.gz'; relative to the folder "
+                     "MANIFEST, if one is given");
+  command.add_option("--format", a.formats,
+                     "endings of the meshes of each case: vtu,stl (default: vtu; of surface stl; of fem inp)");
   command.add_option("--jobs", a.jobs, "cases at once (default: one for each core)")->check(CLI::Range(1, 4096));
-  command.add_option("--only", a.only, "failed (those that failed before run again), or ids and globs of ids: failed,sub-01,'sub-1*'");
-  command.add_flag("--dry-run", a.dry_run, "only what would run, with foretold memory and time, from a look at each input");
+  command.add_option("--only", a.only,
+                     "failed (those that failed before run again), or ids and globs of ids: failed,sub-01,'sub-1*'");
+  command.add_flag("--dry-run", a.dry_run,
+                   "only what would run, with foretold memory and time, from a look at each input");
   command.add_flag("--json", a.json, "with --dry-run: as JSON");
-  command.add_option("--retry", a.retries, "more tries of a case that fails, unless its input or call is wrong")->check(CLI::Range(0, 100))->capture_default_str();
-  command.add_option("--timeout", a.timeout_s, "of each case, s (default: none)")->check(number_in(1e-3, 1e9, "a number above 0"));
+  command.add_option("--retry", a.retries, "more tries of a case that fails, unless its input or call is wrong")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  command.add_option("--timeout", a.timeout_s, "of each case, s (default: none)")
+      ->check(number_in(1e-3, 1e9, "a number above 0"));
   command.add_option("--max-memory", a.memory, "what all cases at once may take: 12GB (default: what is free)");
   command.add_option("--case-memory", a.case_memory, "what each case may take: 4GB (default: what all may)");
-  command.add_option("--slurm", a.slurm, "submit to Slurm instead of running here; options of sbatch in one text: \"--partition=long --account=x\" (\"\" for none)");
-  command.add_option("--cases-per-task", a.cases_per_task, "with --slurm: cases in a row in each task of the array")->check(CLI::Range(1, 100000))->capture_default_str();
+  command.add_option("--slurm", a.slurm,
+                     "submit to Slurm instead of running here; options of sbatch in one text: \"--partition=long "
+                     "--account=x\" (\"\" for none)");
+  command.add_option("--cases-per-task", a.cases_per_task, "with --slurm: cases in a row in each task of the array")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   command.add_flag("--status", a.status, "only how far the cohort is, here and in Slurm's queue");
   command.add_flag("--no-page", a.no_page, "leave out cohort.html and the other files of collect at the end");
   command.add_flag("--quiet", a.quiet, "no line for each case");
@@ -69,7 +85,10 @@ std::vector<std::string> split_formats(const std::string& text, const std::strin
     if (!part.empty() && part[0] == '.') part.erase(0, 1);
     const std::string path = "mesh." + part;
     const bool known = is_surface_format(path) ? command != "fem" : is_volume_format(path) && command != "surface";
-    if (!part.empty() && !known) fail_usage(command + " does not write '" + part + "'", "--format", "choose of " + (command == "surface" ? std::string() : volume_endings() + " ") + (command == "fem" ? "" : surface_endings()));
+    if (!part.empty() && !known)
+      fail_usage(command + " does not write '" + part + "'", "--format",
+                 "choose of " + (command == "surface" ? std::string() : volume_endings() + " ") +
+                     (command == "fem" ? "" : surface_endings()));
     if (!part.empty() && std::find(formats.begin(), formats.end(), part) == formats.end()) formats.push_back(part);
     part.clear();
   }
@@ -91,17 +110,22 @@ std::string program_path() {
   return error ? "/proc/self/exe" : path.string();
 }
 
-void read_source(const BatchArguments& a, const std::vector<OptionValue>& options, const CaseCommand& command, CohortPlan& plan) {
+void read_source(const BatchArguments& a, const std::vector<OptionValue>& options, const CaseCommand& command,
+                 CohortPlan& plan) {
   std::error_code ignored;
   const bool is_folder = fs::is_directory(a.manifest, ignored);
-  if (!a.manifest.empty() && !fs::exists(a.manifest, ignored)) fail_input("the manifest is not there", a.manifest, "check the name");
+  if (!a.manifest.empty() && !fs::exists(a.manifest, ignored))
+    fail_input("the manifest is not there", a.manifest, "check the name");
   plan.source = a.manifest.empty() ? "" : fs::canonical(a.manifest, ignored).string();
   if (!a.inputs.empty()) {
-    if (!a.manifest.empty() && !is_folder) fail_usage("a manifest and --inputs both name the cases", "command line", "give one of them; --inputs may be relative to a folder");
+    if (!a.manifest.empty() && !is_folder)
+      fail_usage("a manifest and --inputs both name the cases", "command line",
+                 "give one of them; --inputs may be relative to a folder");
     plan.cases = read_glob(a.inputs, a.manifest, command, options);
     plan.source = (plan.source.empty() ? fs::current_path(ignored).string() : plan.source) + "/" + a.inputs;
   } else if (a.manifest.empty()) {
-    fail_usage("there is no manifest", "command line", "name a CSV or TSV file, a folder of BIDS derivatives, or files with --inputs 'GLOB'");
+    fail_usage("there is no manifest", "command line",
+               "name a CSV or TSV file, a folder of BIDS derivatives, or files with --inputs 'GLOB'");
   } else if (is_folder) {
     plan.cases = read_bids_tree(a.manifest, command, options);
   } else {
@@ -143,7 +167,9 @@ Batch read_batch(const BatchArguments& a, const CohortFolder& folder) {
   if (!words.empty() && words[0].rfind('-', 0) != 0) {
     name = words[0];
     words.erase(words.begin());
-    if (name != "mesh" && name != "surface" && name != "fem") fail_usage("'" + name + "' makes no case", "behind --", "write mesh, surface or fem, or their options alone (for mesh)");
+    if (name != "mesh" && name != "surface" && name != "fem")
+      fail_usage("'" + name + "' makes no case", "behind --",
+                 "write mesh, surface or fem, or their options alone (for mesh)");
   }
   batch.command = case_command(name, split_formats(a.formats, name));
   const std::vector<OptionValue> options = read_case_options(name, words);
@@ -156,7 +182,9 @@ Batch read_batch(const BatchArguments& a, const CohortFolder& folder) {
   return batch;
 }
 
-std::uint64_t bytes_of(const std::string& text, const std::string& option) { return text.empty() ? 0 : parse_memory(text, option); }
+std::uint64_t bytes_of(const std::string& text, const std::string& option) {
+  return text.empty() ? 0 : parse_memory(text, option);
+}
 
 RunCasesOptions run_options(const BatchArguments& a, bool failed_again) {
   RunCasesOptions o;
@@ -173,27 +201,37 @@ RunCasesOptions run_options(const BatchArguments& a, bool failed_again) {
 void print_event(const CaseEvent& e) {
   using Kind = CaseEvent::Kind;
   const CaseRecord& r = e.record;
-  const char* word = e.kind == Kind::done ? "done" : e.kind == Kind::adopted ? "adopted" : e.kind == Kind::failed ? "failed" : "";
+  const char* word = e.kind == Kind::done      ? "done"
+                     : e.kind == Kind::adopted ? "adopted"
+                     : e.kind == Kind::failed  ? "failed"
+                                               : "";
   if (*word == '\0') return;
-  std::printf("%5zu/%zu  %-7s %-32s %8.1f s %7.0f MB  %s\n", e.ended, e.of, word, printable(r.id).c_str(), r.wall_s, r.peak_mb, printable(r.reason).c_str());
+  std::printf("%5zu/%zu  %-7s %-32s %8.1f s %7.0f MB  %s\n", e.ended, e.of, word, printable(r.id).c_str(), r.wall_s,
+              r.peak_mb, printable(r.reason).c_str());
   std::fflush(stdout);
 }
 
-std::string plural(std::size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+std::string plural(std::size_t n, const char* what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
 
 /// Runs the cases here, tells of them, and ends as the program has to.
 void run_here(const BatchArguments& a, const Batch& batch, const CohortFolder& folder, bool with_page) {
   std::vector<std::pair<std::string, std::string>> failed_before;
-  const RunCasesResult result = run_cases(batch.chosen, batch.command, folder, run_options(a, batch.failed_again), [&](const CaseEvent& e) {
-    if (e.kind == CaseEvent::Kind::failed_before) failed_before.emplace_back(e.record.id, e.record.reason);
-    if (!a.quiet) print_event(e);
-  });
+  const RunCasesResult result =
+      run_cases(batch.chosen, batch.command, folder, run_options(a, batch.failed_again), [&](const CaseEvent& e) {
+        if (e.kind == CaseEvent::Kind::failed_before) failed_before.emplace_back(e.record.id, e.record.reason);
+        if (!a.quiet) print_event(e);
+      });
   const std::size_t failed = result.failed + result.failed_before;
-  for (const auto& [id, reason] : failed_before) std::printf("failed before  %s: %s\n", printable(id).c_str(), printable(reason).c_str());
-  std::printf("%s: %zu done", plural(batch.chosen.size(), "case").c_str(), result.done + result.adopted + result.unchanged);
+  for (const auto& [id, reason] : failed_before)
+    std::printf("failed before  %s: %s\n", printable(id).c_str(), printable(reason).c_str());
+  std::printf("%s: %zu done", plural(batch.chosen.size(), "case").c_str(),
+              result.done + result.adopted + result.unchanged);
   if (result.unchanged + result.adopted > 0) std::printf(" (%zu of them before)", result.unchanged + result.adopted);
   std::printf(", %zu failed", failed);
-  if (result.failed_before > 0) std::printf(" (%zu of them before; --only failed runs them again)", result.failed_before);
+  if (result.failed_before > 0)
+    std::printf(" (%zu of them before; --only failed runs them again)", result.failed_before);
   if (result.not_run > 0) std::printf(", %zu not run", result.not_run);
   std::printf("\n");
   if (result.stopped_by != 0) {
@@ -204,12 +242,16 @@ void run_here(const BatchArguments& a, const Batch& batch, const CohortFolder& f
   }
   if (with_page) {
     const Cohort cohort = collect(folder, {});
-    std::printf("page  %s: %zu outside their limits, %s among the others\n", printable(folder.path() + "/cohort.html").c_str(), cohort.outside(), plural(cohort.outliers(), "outlier").c_str());
+    std::printf("page  %s: %zu outside their limits, %s among the others\n",
+                printable(folder.path() + "/cohort.html").c_str(), cohort.outside(),
+                plural(cohort.outliers(), "outlier").c_str());
   }
   std::fflush(stdout);
   if (failed > 0)
-    throw Error(ErrorKind::no_result, plural(failed, "case") + " of " + std::to_string(batch.chosen.size()) + " failed", folder.path(),
-                "read why above or in " + std::string(a.no_page ? "each ID.failed/log.txt" : "cohort.html") + ", mend it and run the same command again, or --only failed");
+    throw Error(ErrorKind::no_result, plural(failed, "case") + " of " + std::to_string(batch.chosen.size()) + " failed",
+                folder.path(),
+                "read why above or in " + std::string(a.no_page ? "each ID.failed/log.txt" : "cohort.html") +
+                    ", mend it and run the same command again, or --only failed");
 }
 
 const char* action_of(const CohortFolder& folder, const CohortCase& c, const std::string& key, bool failed_again) {
@@ -220,11 +262,14 @@ const char* action_of(const CohortFolder& folder, const CohortCase& c, const std
 }
 
 void print_dry_run(const BatchArguments& a, const Batch& batch, const CohortFolder& folder) {
-  const std::vector<CaseLook> looks = look_at_cases(batch.chosen, batch.command, folder, a.jobs, RunCasesOptions().look_timeout_s);
+  const std::vector<CaseLook> looks =
+      look_at_cases(batch.chosen, batch.command, folder, a.jobs, RunCasesOptions().look_timeout_s);
   nlohmann::ordered_json cases = nlohmann::ordered_json::array();
   double seconds = 0, most_mb = 0;
   std::size_t runs = 0;
-  if (!a.json) std::printf("%-32s %-14s %10s %9s %11s %7s  %s\n", "case", "action", "memory, MB", "time, s", "voxels", "labels", "input");
+  if (!a.json)
+    std::printf("%-32s %-14s %10s %9s %11s %7s  %s\n", "case", "action", "memory, MB", "time, s", "voxels", "labels",
+                "input");
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const CaseLook& l = looks[i];
     const std::string action = action_of(folder, batch.chosen[i], l.key, batch.failed_again);
@@ -236,24 +281,44 @@ void print_dry_run(const BatchArguments& a, const Batch& batch, const CohortFold
     std::string input;
     for (const std::string& part : batch.chosen[i].inputs) input += (input.empty() ? "" : " ") + part;
     if (a.json)
-      cases.push_back({{"id", batch.chosen[i].id}, {"inputs", batch.chosen[i].inputs}, {"action", action}, {"memory_mb", l.memory_mb}, {"time_s", l.time_s}, {"voxels", l.voxels}, {"labels", l.labels},
-                       {"key", l.key}, {"fault", l.fault}});
-    else if (action == "done before" || action == "failed before") std::printf("%-32s %s\n", printable(batch.chosen[i].id).c_str(), action.c_str());
-    else if (!l.fault.empty()) std::printf("%-32s %-14s %s\n", printable(batch.chosen[i].id).c_str(), action.c_str(), printable("would fail: " + l.fault).c_str());
-    else std::printf("%-32s %-14s %10.0f %9.1f %11zu %7zu  %s\n", printable(batch.chosen[i].id).c_str(), action.c_str(), l.memory_mb, l.time_s, l.voxels, l.labels, printable(input).c_str());
+      cases.push_back({{"id", batch.chosen[i].id},
+                       {"inputs", batch.chosen[i].inputs},
+                       {"action", action},
+                       {"memory_mb", l.memory_mb},
+                       {"time_s", l.time_s},
+                       {"voxels", l.voxels},
+                       {"labels", l.labels},
+                       {"key", l.key},
+                       {"fault", l.fault}});
+    else if (action == "done before" || action == "failed before")
+      std::printf("%-32s %s\n", printable(batch.chosen[i].id).c_str(), action.c_str());
+    else if (!l.fault.empty())
+      std::printf("%-32s %-14s %s\n", printable(batch.chosen[i].id).c_str(), action.c_str(),
+                  printable("would fail: " + l.fault).c_str());
+    else
+      std::printf("%-32s %-14s %10.0f %9.1f %11zu %7zu  %s\n", printable(batch.chosen[i].id).c_str(), action.c_str(),
+                  l.memory_mb, l.time_s, l.voxels, l.labels, printable(input).c_str());
   }
-  if (a.json) std::printf("%s\n", nlohmann::ordered_json({{"cases", cases}}).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
-  else std::printf("%s to run, about %.0f s on one core in all, at most %.0f MB for one\n", plural(runs, "case").c_str(), seconds, most_mb);
+  if (a.json)
+    std::printf("%s\n", nlohmann::ordered_json({{"cases", cases}})
+                            .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                            .c_str());
+  else
+    std::printf("%s to run, about %.0f s on one core in all, at most %.0f MB for one\n", plural(runs, "case").c_str(),
+                seconds, most_mb);
 }
 
 void submit_to_slurm(const BatchArguments& a, const Batch& batch, const CohortFolder& folder) {
   const std::map<std::string, std::string> queued = queued_cases(folder);
   std::vector<CohortCase> open;
   std::vector<CaseLook> looks;
-  const std::vector<CaseLook> all = look_at_cases(batch.chosen, batch.command, folder, a.jobs, RunCasesOptions().look_timeout_s);
+  const std::vector<CaseLook> all =
+      look_at_cases(batch.chosen, batch.command, folder, a.jobs, RunCasesOptions().look_timeout_s);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const CohortCase& c = batch.chosen[i];
-    if (queued.count(c.id) > 0 || std::string(action_of(folder, c, all[i].key, batch.failed_again)).rfind("run", 0) != 0) continue;
+    if (queued.count(c.id) > 0 ||
+        std::string(action_of(folder, c, all[i].key, batch.failed_again)).rfind("run", 0) != 0)
+      continue;
     open.push_back(c);
     looks.push_back(all[i]);
   }
@@ -268,16 +333,23 @@ void submit_to_slurm(const BatchArguments& a, const Batch& batch, const CohortFo
   std::vector<SlurmArray> arrays = size_classes(open, looks, o, most_array_tasks());
   submit(arrays, batch.plan, folder, o);
   for (const SlurmArray& array : arrays)
-    std::printf("submitted  job %s: %s in %s, %llu MB and %d minutes each\n", array.job_id.c_str(), plural(array.ids.size(), "case").c_str(), plural(static_cast<std::size_t>(array.tasks), "task").c_str(),
+    std::printf("submitted  job %s: %s in %s, %llu MB and %d minutes each\n", array.job_id.c_str(),
+                plural(array.ids.size(), "case").c_str(), plural(static_cast<std::size_t>(array.tasks), "task").c_str(),
                 static_cast<unsigned long long>(array.memory_mb), array.minutes);
-  std::printf("%s submitted, %zu in the queue before, %zu with a result; see stackmesh batch --status -o %s, then stackmesh collect %s\n", plural(open.size(), "case").c_str(), queued.size(),
-              batch.chosen.size() - open.size() - queued.size(), printable(folder.path()).c_str(), printable(folder.path()).c_str());
+  std::printf(
+      "%s submitted, %zu in the queue before, %zu with a result; see stackmesh batch --status -o %s, then stackmesh "
+      "collect %s\n",
+      plural(open.size(), "case").c_str(), queued.size(), batch.chosen.size() - open.size() - queued.size(),
+      printable(folder.path()).c_str(), printable(folder.path()).c_str());
 }
 
 void print_status(const CohortFolder& folder) {
   const std::optional<CohortPlan> plan = folder.plan();
-  if (!plan) fail_input("the folder holds no cohort: there is no .cohort/plan.json", folder.path(), "name the folder that stackmesh batch wrote with -o");
-  const std::map<std::string, std::string> queued = submitted_arrays(folder).empty() ? std::map<std::string, std::string>() : queued_cases(folder);
+  if (!plan)
+    fail_input("the folder holds no cohort: there is no .cohort/plan.json", folder.path(),
+               "name the folder that stackmesh batch wrote with -o");
+  const std::map<std::string, std::string> queued =
+      submitted_arrays(folder).empty() ? std::map<std::string, std::string>() : queued_cases(folder);
   std::size_t done = 0, running = 0, waiting = 0;
   std::vector<std::string> failed, lost;
   for (const CohortCase& c : plan->cases) {
@@ -285,9 +357,12 @@ void print_status(const CohortFolder& folder) {
     if (at != queued.end() && !folder.record(c.id)) ++(at->second.rfind("PENDING", 0) == 0 ? waiting : running);
     else if (const auto record = folder.record(c.id, true)) failed.push_back(c.id + ": " + record->reason);
     else if (folder.record(c.id)) ++done;
-    else lost.push_back(c.id + ": " + (last_words(folder, c.id).empty() ? "no result, and not in the queue" : last_words(folder, c.id)));
+    else
+      lost.push_back(c.id + ": " +
+                     (last_words(folder, c.id).empty() ? "no result, and not in the queue" : last_words(folder, c.id)));
   }
-  std::printf("%s: %zu done, %zu failed, %zu running, %zu waiting, %zu open\n", plural(plan->cases.size(), "case").c_str(), done, failed.size(), running, waiting, lost.size());
+  std::printf("%s: %zu done, %zu failed, %zu running, %zu waiting, %zu open\n",
+              plural(plan->cases.size(), "case").c_str(), done, failed.size(), running, waiting, lost.size());
   std::map<std::string, std::size_t> states;
   for (const auto& [id, state] : queued) ++states[state];
   for (const auto& [state, n] : states) std::printf("queue   %zu %s\n", n, printable(state).c_str());
@@ -298,13 +373,18 @@ void print_status(const CohortFolder& folder) {
 /// A task of a Slurm array: the cases of a plan that are its share.
 void run_task(const BatchArguments& a, const CohortFolder& folder) {
   const char* const index = std::getenv("SLURM_ARRAY_TASK_ID");
-  if (index == nullptr) fail_usage("this is no task of a Slurm array", "--task", "leave it to the script that batch --slurm writes");
+  if (index == nullptr)
+    fail_usage("this is no task of a Slurm array", "--task", "leave it to the script that batch --slurm writes");
   Batch batch;
   batch.plan = read_plan(a.task);
   batch.command = case_command(batch.plan.command, batch.plan.formats);
-  if (batch.plan.version != batch.command.version) fail_usage("the plan is of stackmesh " + batch.plan.version + ", this is " + batch.command.version, a.task, "install one version on all nodes");
-  const std::size_t per_task = static_cast<std::size_t>(a.cases_per_task), first = static_cast<std::size_t>(std::strtoul(index, nullptr, 10)) * per_task;
-  for (std::size_t i = first; i < std::min(batch.plan.cases.size(), first + per_task); ++i) batch.chosen.push_back(batch.plan.cases[i]);
+  if (batch.plan.version != batch.command.version)
+    fail_usage("the plan is of stackmesh " + batch.plan.version + ", this is " + batch.command.version, a.task,
+               "install one version on all nodes");
+  const std::size_t per_task = static_cast<std::size_t>(a.cases_per_task),
+                    first = static_cast<std::size_t>(std::strtoul(index, nullptr, 10)) * per_task;
+  for (std::size_t i = first; i < std::min(batch.plan.cases.size(), first + per_task); ++i)
+    batch.chosen.push_back(batch.plan.cases[i]);
   batch.failed_again = a.only == "failed";
   const CohortLock lock(folder, true);
   BatchArguments one = a;
@@ -348,7 +428,9 @@ std::vector<std::string> take_case_words(std::vector<std::string>& arguments) {
 }
 
 void add_batch_command(CLI::App& program, const std::vector<std::string>& case_words) {
-  CLI::App* command = program.add_subcommand("batch", "Many cases: meshes each into a folder of its own, here or on a Slurm cluster, and goes on where it stopped");
+  CLI::App* command = program.add_subcommand(
+      "batch",
+      "Many cases: meshes each into a folder of its own, here or on a Slurm cluster, and goes on where it stopped");
   auto a = std::make_shared<BatchArguments>();
   a->case_words = case_words;
   add_options(*command, *a);

@@ -27,7 +27,8 @@ class CheckedCommand {
     command_->remove_option(command_->get_option("INPUT"));
     for (const char* own : {"--output", "--report", "--max-memory"}) command_->remove_option(command_->get_option(own));
     // The real one takes effect when it is read.
-    command_->add_option_function<std::string>("--max-memory", [](const std::string& text) { parse_memory(text, "--max-memory"); });
+    command_->add_option_function<std::string>("--max-memory",
+                                               [](const std::string& text) { parse_memory(text, "--max-memory"); });
   }
 
   CLI::App& command() { return *command_; }
@@ -36,7 +37,8 @@ class CheckedCommand {
     for (const std::string& word : words) {
       const std::string name = word.substr(0, word.find('='));
       if (name == "--output" || name == "--report" || word.rfind("-o", 0) == 0)
-        fail_usage("batch names the files of a case itself", name, "leave it out; --format chooses what is written, such as --format vtu,stl");
+        fail_usage("batch names the files of a case itself", name,
+                   "leave it out; --format chooses what is written, such as --format vtu,stl");
     }
     std::vector<std::string> arguments(words.rbegin(), words.rend());  // as CLI11 takes a vector
     arguments.push_back(name_);
@@ -68,7 +70,8 @@ CaseCommand case_command(const std::string& name, const std::vector<std::string>
   for (const CLI::Option* o : checked.command().get_options()) {
     if (!is_for_cases(*o)) continue;
     for (const std::string& long_name : o->get_lnames())
-      c.options.push_back({long_name, o->get_items_expected_max() == 0, o->get_items_expected_max() > 1, kPaths.count(long_name) > 0});
+      c.options.push_back(
+          {long_name, o->get_items_expected_max() == 0, o->get_items_expected_max() > 1, kPaths.count(long_name) > 0});
   }
   c.check = [name](const std::vector<std::string>& words) { CheckedCommand(name).parse(words); };
   return c;
@@ -86,7 +89,9 @@ std::vector<OptionValue> read_case_options(const std::string& name, const std::v
         if (!text.empty()) value.values.push_back(text);
     if (value.name == "names")
       for (const std::string& path : value.values)
-        if (ends_with(lower_case(path), ".json")) fail_usage("every case would write the same file", "--names " + path, "leave it out: the label names are in each report.json");
+        if (ends_with(lower_case(path), ".json"))
+          fail_usage("every case would write the same file", "--names " + path,
+                     "leave it out: the label names are in each report.json");
     values.push_back(value);
   }
   return merged(values, {});

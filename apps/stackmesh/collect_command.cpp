@@ -24,15 +24,23 @@ void add_collect_command(CLI::App& program) {
     const Cohort cohort = collect(CohortFolder(a->folder), {!a->no_pictures, a->threads});
     const std::size_t done = cohort.count(CohortRow::State::done), all = cohort.rows.size();
     if (!a->quiet) {
-      std::printf("%zu cases: %zu done, %zu failed, %zu made with other options, %zu not run; of those done %zu outside their limits, %zu outliers among the others\n", all, done,
-                  cohort.count(CohortRow::State::failed), cohort.count(CohortRow::State::changed), cohort.count(CohortRow::State::missing), cohort.outside(), cohort.outliers());
-      for (const char* name : {"cohort.html", "cohort.csv", "cohort.json"}) std::printf("written  %s\n", printable(a->folder + "/" + name).c_str());
+      std::printf(
+          "%zu cases: %zu done, %zu failed, %zu made with other options, %zu not run; of those done %zu outside their "
+          "limits, %zu outliers among the others\n",
+          all, done, cohort.count(CohortRow::State::failed), cohort.count(CohortRow::State::changed),
+          cohort.count(CohortRow::State::missing), cohort.outside(), cohort.outliers());
+      for (const char* name : {"cohort.html", "cohort.csv", "cohort.json"})
+        std::printf("written  %s\n", printable(a->folder + "/" + name).c_str());
       std::fflush(stdout);
     }
     if (cohort.exit_code() == static_cast<int>(ErrorKind::no_result))
-      throw Error(ErrorKind::no_result, std::to_string(all - done) + " of " + std::to_string(all) + " cases have no result", a->folder + "/cohort.html", "read there why, and run the batch again");
+      throw Error(ErrorKind::no_result,
+                  std::to_string(all - done) + " of " + std::to_string(all) + " cases have no result",
+                  a->folder + "/cohort.html", "read there why, and run the batch again");
     if (cohort.exit_code() != 0)
-      throw Error(ErrorKind::outside_limits, std::to_string(cohort.outside()) + " of " + std::to_string(all) + " cases are outside their limits", a->folder + "/cohort.html", "look at the first ones there");
+      throw Error(ErrorKind::outside_limits,
+                  std::to_string(cohort.outside()) + " of " + std::to_string(all) + " cases are outside their limits",
+                  a->folder + "/cohort.html", "look at the first ones there");
   });
 }
 

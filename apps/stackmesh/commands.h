@@ -11,7 +11,8 @@
 namespace stackmesh::app {
 
 /// Each adds its command to the program; the command runs when it is parsed.
-/// With Purpose::check the commands that make meshes only tell whether they understand their options. @throws Error(usage) where not
+/// With Purpose::check the commands that make meshes only tell whether they understand their options. @throws
+/// Error(usage) where not
 enum class Purpose { run, check };
 void add_mesh_command(CLI::App& program, Purpose purpose = Purpose::run);
 void add_surface_command(CLI::App& program, Purpose purpose = Purpose::run);

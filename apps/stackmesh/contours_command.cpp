@@ -38,8 +38,11 @@ void run(const ContoursArguments& a) {
   Input input = read_input(a.input.options());
   check_stack_axis(input, options.contours.axis);
   if (input.volume && !options.as_stored && options.band_px > 0) reduce_to_true_grid(input, options.contours.threads);
-  Stack stack = !input.volume ? drawn_sections(input) : volume_sections(*input.volume, options, *progress).contours.stack;
-  stack.sections.erase(std::remove_if(stack.sections.begin(), stack.sections.end(), [](const Section& s) { return s.interpolated; }), stack.sections.end());
+  Stack stack =
+      !input.volume ? drawn_sections(input) : volume_sections(*input.volume, options, *progress).contours.stack;
+  stack.sections.erase(
+      std::remove_if(stack.sections.begin(), stack.sections.end(), [](const Section& s) { return s.interpolated; }),
+      stack.sections.end());
   AtomicFiles files;
   write_sections(files, a.output, stack);
   files.commit();
@@ -50,7 +53,8 @@ void run(const ContoursArguments& a) {
     vertices += s.points.size();
     edges += s.edges.size();
   }
-  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges, printable(written_name(a.output, stack)).c_str());
+  std::printf("%zu sections, %zu vertices, %zu edges: %s\n", stack.sections.size(), vertices, edges,
+              printable(written_name(a.output, stack)).c_str());
 }
 
 }  // namespace

@@ -11,7 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json colour_of(const LabelInfo& label) { return label.colour ? Json(*label.colour) : Json(nullptr); }
+Json colour_of(const LabelInfo& label) {
+  return label.colour ? Json(*label.colour) : Json(nullptr);
+}
 
 /// @param s of contours
 Json describe(const Input& input, const Stack& s, const std::array<double, 3>& made_mm) {
@@ -30,7 +32,10 @@ Json describe(const Input& input, const Stack& s, const std::array<double, 3>& m
     j["axis"] = std::string(1, "xyz"[stacking_axis(v, StackAxis::automatic)]);
     const std::vector<std::size_t> counts = count_voxels(v);
     for (std::size_t k = 1; k < v.labels.size(); ++k)
-      labels.push_back({{"label", v.labels[k].number}, {"name", v.labels[k].name}, {"colour", colour_of(v.labels[k])}, {"voxels", counts[k]},
+      labels.push_back({{"label", v.labels[k].number},
+                        {"name", v.labels[k].name},
+                        {"colour", colour_of(v.labels[k])},
+                        {"voxels", counts[k]},
                         {"volume_mm3", static_cast<double>(counts[k]) * v.voxel_volume_mm3()}});
   } else {
     j["space"] = input.anatomical ? "lps" : "none";
@@ -44,7 +49,11 @@ Json describe(const Input& input, const Stack& s, const std::array<double, 3>& m
         sections += a > 0 ? 1 : 0;
         area = std::max(area, a);
       }
-      labels.push_back({{"label", s.labels[k].number}, {"name", s.labels[k].name}, {"colour", colour_of(s.labels[k])}, {"sections", sections}, {"largest_area_mm2", area}});
+      labels.push_back({{"label", s.labels[k].number},
+                        {"name", s.labels[k].name},
+                        {"colour", colour_of(s.labels[k])},
+                        {"sections", sections},
+                        {"largest_area_mm2", area}});
     }
   }
   j["labels"] = labels;
@@ -57,21 +66,26 @@ void print(const Input& input, const Stack& s, const std::array<double, 3>& made
   std::printf("%s (%s)\n", printable(input.path).c_str(), input.kind.c_str());
   if (input.volume) {
     const LabelVolume& v = *input.volume;
-    std::printf("dimensions %d x %d x %d voxels, spacing %g x %g x %g mm, stacked along %c\n", v.size[0], v.size[1], v.size[2],
-                v.spacing_mm[0], v.spacing_mm[1], v.spacing_mm[2], "xyz"[stacking_axis(v, StackAxis::automatic)]);
+    std::printf("dimensions %d x %d x %d voxels, spacing %g x %g x %g mm, stacked along %c\n", v.size[0], v.size[1],
+                v.size[2], v.spacing_mm[0], v.spacing_mm[1], v.spacing_mm[2],
+                "xyz"[stacking_axis(v, StackAxis::automatic)]);
     if (made_mm != v.spacing_mm)
       std::printf("made on    voxels of %.4g x %.4g x %.4g mm, stored finer\n", made_mm[0], made_mm[1], made_mm[2]);
-    std::printf("origin     %g, %g, %g mm%s\n", v.origin_mm.x, v.origin_mm.y, v.origin_mm.z, v.anatomical ? " (LPS)" : " (no anatomy)");
+    std::printf("origin     %g, %g, %g mm%s\n", v.origin_mm.x, v.origin_mm.y, v.origin_mm.z,
+                v.anatomical ? " (LPS)" : " (no anatomy)");
     for (int a = 0; a < 3; ++a)
-      std::printf("%s %8.5f %8.5f %8.5f\n", a == 0 ? "axes      " : "          ", v.axes[a].x, v.axes[a].y, v.axes[a].z);
+      std::printf("%s %8.5f %8.5f %8.5f\n", a == 0 ? "axes      " : "          ", v.axes[a].x, v.axes[a].y,
+                  v.axes[a].z);
     const std::vector<std::size_t> counts = count_voxels(v);
     std::printf("%8s %12s %14s  %s\n", "label", "voxels", "volume mm3", "name");
     for (std::size_t k = 1; k < v.labels.size(); ++k)
-      std::printf("%8d %12zu %14.1f  %s\n", v.labels[k].number, counts[k], static_cast<double>(counts[k]) * v.voxel_volume_mm3(),
-                  printable(v.labels[k].name).c_str());
+      std::printf("%8d %12zu %14.1f  %s\n", v.labels[k].number, counts[k],
+                  static_cast<double>(counts[k]) * v.voxel_volume_mm3(), printable(v.labels[k].name).c_str());
   } else {
-    std::printf("sections   %zu, from z = %g to %g mm\n", s.sections.size(), s.sections.front().z_mm, s.sections.back().z_mm);
-    for (std::size_t k = 1; k < s.labels.size(); ++k) std::printf("%8d  %s\n", s.labels[k].number, printable(s.labels[k].name).c_str());
+    std::printf("sections   %zu, from z = %g to %g mm\n", s.sections.size(), s.sections.front().z_mm,
+                s.sections.back().z_mm);
+    for (std::size_t k = 1; k < s.labels.size(); ++k)
+      std::printf("%8d  %s\n", s.labels[k].number, printable(s.labels[k].name).c_str());
   }
 }
 
@@ -94,11 +108,15 @@ Read read(const InputOptions& options) {
   return r;
 }
 
-std::string to_json(const Read& r) { return describe(r.input, r.sections, r.made_mm).dump(1, ' ', false, Json::error_handler_t::replace); }
+std::string to_json(const Read& r) {
+  return describe(r.input, r.sections, r.made_mm).dump(1, ' ', false, Json::error_handler_t::replace);
+}
 
 }  // namespace
 
-std::string info_json(const InputOptions& input) { return to_json(read(input)); }
+std::string info_json(const InputOptions& input) {
+  return to_json(read(input));
+}
 
 void add_info_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("info", "Dimensions, spacing, direction and labels of an input");

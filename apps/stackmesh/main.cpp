@@ -23,15 +23,20 @@ int report(const std::string& text, stackmesh::ErrorKind kind) {
 }
 
 int report_memory() {
-  return report("the memory that may be taken, " + stackmesh::memory_text(stackmesh::memory_limit()) + ", is not enough, this machine, ulimit or --max-memory; mesh fewer labels or a smaller volume at once",
-                stackmesh::ErrorKind::no_result);
+  return report(
+      "the memory that may be taken, " + stackmesh::memory_text(stackmesh::memory_limit()) +
+          ", is not enough, this machine, ulimit or --max-memory; mesh fewer labels or a smaller volume at once",
+      stackmesh::ErrorKind::no_result);
 }
 
 /// What was printed must have arrived.
 int finish(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   const int why = errno;
-  return code != 0 ? code : report("cannot write: " + std::string(std::strerror(why != 0 ? why : EIO)) + ", standard output; free some space or redirect it elsewhere", stackmesh::ErrorKind::output);
+  return code != 0 ? code
+                   : report("cannot write: " + std::string(std::strerror(why != 0 ? why : EIO)) +
+                                ", standard output; free some space or redirect it elsewhere",
+                            stackmesh::ErrorKind::output);
 }
 
 /// The last resort: an exception where none may be, such as want of memory in a destructor.
@@ -42,7 +47,8 @@ int finish(int code) {
   } catch (const std::bad_alloc&) {
     code = report_memory();
   } catch (const std::exception& e) {
-    report(std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input", stackmesh::ErrorKind::internal);
+    report(std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input",
+           stackmesh::ErrorKind::internal);
   } catch (...) {
   }
   stackmesh::remove_unfinished_files();
@@ -77,7 +83,8 @@ std::string meant(const CLI::App& program, const std::string& complaint) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program{"Label slices of CT and MRI to conforming surfaces and tetrahedral meshes, closed and free of intersections."};
+  CLI::App program{
+      "Label slices of CT and MRI to conforming surfaces and tetrahedral meshes, closed and free of intersections."};
   program.name("stackmesh");
   program.set_version_flag("--version", "stackmesh " STACKMESH_VERSION);
   program.require_subcommand(1);
@@ -105,7 +112,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {  // --help, --version
     return program.exit(e);
   } catch (const CLI::ParseError& e) {
-    return report(std::string(e.what()) + meant(program, e.what()) + ", command line; see stackmesh --help", stackmesh::ErrorKind::usage);
+    return report(std::string(e.what()) + meant(program, e.what()) + ", command line; see stackmesh --help",
+                  stackmesh::ErrorKind::usage);
   }
   return 0;
 }
@@ -124,11 +132,15 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report_memory();
   } catch (const std::filesystem::filesystem_error& e) {
-    return report("cannot be read: " + e.code().message() + ", " + e.path1().string() + "; check its folder and your rights", stackmesh::ErrorKind::input);
+    return report(
+        "cannot be read: " + e.code().message() + ", " + e.path1().string() + "; check its folder and your rights",
+        stackmesh::ErrorKind::input);
   } catch (const std::system_error& e) {  // threads and processes that the system does not give
-    return report("the system does not give what is needed: " + std::string(e.what()) + ", this machine; allow more processes (ulimit -u) or give fewer --threads",
+    return report("the system does not give what is needed: " + std::string(e.what()) +
+                      ", this machine; allow more processes (ulimit -u) or give fewer --threads",
                   stackmesh::ErrorKind::no_result);
   } catch (const std::exception& e) {
-    return report(std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input", stackmesh::ErrorKind::internal);
+    return report(std::string(e.what()) + "; this is a bug of stackmesh: please report it with the input",
+                  stackmesh::ErrorKind::internal);
   }
 }

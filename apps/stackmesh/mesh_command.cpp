@@ -7,8 +7,8 @@
 #include "commands.h"
 #include "meshio/write_mesh.h"
 #include "options.h"
-#include "slicer_module.h"
 #include "pipeline/mesh_run.h"
+#include "slicer_module.h"
 
 namespace stackmesh::app {
 namespace {
@@ -44,47 +44,98 @@ struct MeshArguments {
 void add_options(CLI::App& command, MeshArguments& a, Target target) {
   const CLI::Validator positive = number_in(1e-12, 1e12, "a number above 0");
   a.input.add_to(command, true);
-  command.add_option("-o,--output", a.outputs,
-                     "output: " + (target == Target::volume ? volume_endings() + ", and surfaces " : std::string()) + surface_endings() + "; repeatable")
-      ->required()->allow_extra_args(false);
+  command
+      .add_option("-o,--output", a.outputs,
+                  "output: " + (target == Target::volume ? volume_endings() + ", and surfaces " : std::string()) +
+                      surface_endings() + "; repeatable")
+      ->required()
+      ->allow_extra_args(false);
   command.add_option("--report", a.reports, "report file, .json or .html; repeatable")->allow_extra_args(false);
-  command.add_option("--names", a.names, "FILE.json: written, the labels' numbers, names and colours; any other: read, a Slicer colour table or an ITK-SNAP label description")
+  command
+      .add_option("--names", a.names,
+                  "FILE.json: written, the labels' numbers, names and colours; any other: read, a Slicer colour table "
+                  "or an ITK-SNAP label description")
       ->allow_extra_args(false);
   a.contours.add_to(command);
-  command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")->check(number_in(0, 1e6, "a number from 0"))->capture_default_str();
-  command.add_option("--caps", a.caps, "ends: auto, flat or round; per label 5=flat,9=round, per end 1:high=flat,low=round")->capture_default_str();
-  command.add_option("--void,--keep-sets", a.voids, "labels that bound the others and are not filled (blood, a medullary canal), whatever --label says; their walls are sets L_inner_V")
+  command.add_option("--snap", a.snap_mm, "merge tolerance between similar neighbouring contours, mm")
+      ->check(number_in(0, 1e6, "a number from 0"))
+      ->capture_default_str();
+  command
+      .add_option("--caps", a.caps,
+                  "ends: auto, flat or round; per label 5=flat,9=round, per end 1:high=flat,low=round")
+      ->capture_default_str();
+  command
+      .add_option("--void,--keep-sets", a.voids,
+                  "labels that bound the others and are not filled (blood, a medullary canal), whatever --label says; "
+                  "their walls are sets L_inner_V")
       ->type_name("LABEL[,LABEL]");
-  command.add_option("--keep-largest", a.keep_largest, "only the largest piece of each label, or the N largest")->expected(0, 1)->type_name("[N]");
+  command.add_option("--keep-largest", a.keep_largest, "only the largest piece of each label, or the N largest")
+      ->expected(0, 1)
+      ->type_name("[N]");
   command.add_option("--min-piece", a.min_piece_mm3, "no piece of a label that is smaller, mm3")->check(positive);
   command.add_option("--space", a.space, "world frame of what is written: lps or ras")->capture_default_str();
   command.add_flag("--per-label", a.per_label, "surfaces: NAME_<label>.EXT for each label");
   command.add_flag("--strict", a.strict, "a fallback or a lost detail is exit 4");
   EnhanceArguments& e = a.enhance;
-  command.add_option("--interpolate", e.interpolate, "virtual sections per gap: auto or a number; 0 is the paper's direct stitch")->capture_default_str();
-  command.add_option("--deviation", e.deviation, "curvature-adapted sizing: largest distance to the curved surface, mm")->check(positive);
+  command
+      .add_option("--interpolate", e.interpolate,
+                  "virtual sections per gap: auto or a number; 0 is the paper's direct stitch")
+      ->capture_default_str();
+  command
+      .add_option("--deviation", e.deviation, "curvature-adapted sizing: largest distance to the curved surface, mm")
+      ->check(positive);
   command.add_option("--edge-length", e.edge_length, "uniform edge length, mm; per label 5=2.0,9=1.0");
   command.add_option("--edge-min", e.edge_min, "smallest edge of --deviation, mm")->check(positive);
   command.add_option("--edge-max", e.edge_max, "largest edge of --deviation, mm")->check(positive);
-  command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")->check(number_in(1, 100, "a number from 1 to 100"))->capture_default_str();
-  command.add_option("--smooth", e.smooth, "smoothing passes; 0 is none; each above 5 takes more of the voxels' steps away (5 is for a --band of up to 0.5 pixel; a wider one has 2 more for each tenth of a pixel)")->check(CLI::Range(0, 10000))->capture_default_str();
+  command.add_option("--gradation", e.gradation, "largest ratio of neighbouring edge lengths")
+      ->check(number_in(1, 100, "a number from 1 to 100"))
+      ->capture_default_str();
+  command
+      .add_option("--smooth", e.smooth,
+                  "smoothing passes; 0 is none; each above 5 takes more of the voxels' steps away (5 is for a --band "
+                  "of up to 0.5 pixel; a wider one has 2 more for each tenth of a pixel)")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
   command.add_flag("--no-enhance", e.off, "the stitched surface as it is");
-  if (target == Target::surface) command.add_flag("--raw", e.raw, "the stitched surface of the pixels' own outlines, without fairing and enhancement");
+  if (target == Target::surface)
+    command.add_flag("--raw", e.raw,
+                     "the stitched surface of the pixels' own outlines, without fairing and enhancement");
   const std::vector<CLI::Option*> of_volumes = {
-      command.add_option("--target-tets", e.target_tets, "about as many tetrahedra as the sizes by curvature are scaled for (default: at most 150,000, and 50,000 for each further label)")->check(CLI::Range(1L, 1000000000L)),
+      command
+          .add_option("--target-tets", e.target_tets,
+                      "about as many tetrahedra as the sizes by curvature are scaled for (default: at most 150,000, "
+                      "and 50,000 for each further label)")
+          ->check(CLI::Range(1L, 1000000000L)),
       command.add_option("--max-volume", a.max_volume, "largest tetrahedron, mm3; per label 5=2.0,9=1.0"),
-      command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")->check(number_in(1, 100, "a number from 1 to 100")),
-      command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")->check(number_in(0, 40, "a number from 0 to 40")),
-      command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")->check(CLI::Range(1, 2))->capture_default_str(),
-      command.add_option("--refine", a.refine, "how often every tetrahedron is cut into eight at the end: the same surface and order, edges half as long")->check(CLI::Range(0, 4))->capture_default_str(),
-      command.add_option("--layer", a.layers, "5=1.5,3: a layer of wedges under the outer faces of a label, 1.5 mm thick, three over each other; thinner where there is no room; repeatable")
+      command.add_option("--radius-edge", a.radius_edge, "largest radius-edge ratio of tetrahedra; a target")
+          ->check(number_in(1, 100, "a number from 1 to 100")),
+      command.add_option("--dihedral", a.dihedral, "smallest dihedral angle of tetrahedra, degrees; a target")
+          ->check(number_in(0, 40, "a number from 0 to 40")),
+      command.add_option("--order", a.order, "of the tetrahedra: 1 linear, 2 quadratic (10 nodes)")
+          ->check(CLI::Range(1, 2))
+          ->capture_default_str(),
+      command
+          .add_option("--refine", a.refine,
+                      "how often every tetrahedron is cut into eight at the end: the same surface and order, edges "
+                      "half as long")
+          ->check(CLI::Range(0, 4))
+          ->capture_default_str(),
+      command
+          .add_option("--layer", a.layers,
+                      "5=1.5,3: a layer of wedges under the outer faces of a label, 1.5 mm thick, three over each "
+                      "other; thinner where there is no room; repeatable")
           ->type_name("LABEL=MM,COUNT")
           ->allow_extra_args(false),
       command.add_flag("--yes", a.yes, "go on when more than 10 million tetrahedra are estimated"),
       command.add_flag("--msh2", a.msh2, ".msh as Gmsh 2.2"),
-      command.add_option("--timeout", a.timeout_s, "for the volume mesher, and for each run of CalculiX with --accuracy, s")->check(positive)->capture_default_str()};
+      command
+          .add_option("--timeout", a.timeout_s,
+                      "for the volume mesher, and for each run of CalculiX with --accuracy, s")
+          ->check(positive)
+          ->capture_default_str()};
   if (target == Target::surface)
-    for (CLI::Option* option : of_volumes) option->group("");  // accepted without effect, so that both commands take the same line
+    // accepted without effect, so that both commands take the same line
+    for (CLI::Option* option : of_volumes) option->group("");
   command.add_option("--return-parameters", a.return_parameters)->group("");
   a.terminal.add_to(command);
 }
@@ -116,17 +167,22 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (command.get_option("--keep-largest")->count() > 0) {
     const std::string& n = a.keep_largest;
     if (n.size() > 6 || n.find_first_not_of("0123456789") != std::string::npos || n == "0")
-      fail_usage("'" + n + "' is no number of pieces", "--keep-largest", "write --keep-largest for one piece of each label, or --keep-largest N, after the input");
+      fail_usage("'" + n + "' is no number of pieces", "--keep-largest",
+                 "write --keep-largest for one piece of each label, or --keep-largest N, after the input");
     o.mesh.pieces.keep_largest = n.empty() ? 1 : std::stoi(n);
   }
   if (a.min_piece_mm3 > 0) o.mesh.pieces.min_piece_mm3 = a.min_piece_mm3;
   o.mesh.order = a.order;
   o.mesh.refine = a.refine;
-  if (!a.layers.empty() && target == Target::surface) fail_usage("--layer is for volume meshes", "--layer", "leave it out, or use stackmesh mesh");
+  if (!a.layers.empty() && target == Target::surface)
+    fail_usage("--layer is for volume meshes", "--layer", "leave it out, or use stackmesh mesh");
   o.layers = parse_layers(a.layers);
-  if (!o.layers.empty() && o.mesh.refine > 0) fail_usage("--refine cuts tetrahedra, not wedges", "--layer", "leave one of them out; a smaller --edge-length and more wedges refine, too");
+  if (!o.layers.empty() && o.mesh.refine > 0)
+    fail_usage("--refine cuts tetrahedra, not wedges", "--layer",
+               "leave one of them out; a smaller --edge-length and more wedges refine, too");
   o.mesh.many_tets = a.yes;
-  if (!a.max_volume.empty()) o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.mesh.fill.max_volume_mm3);
+  if (!a.max_volume.empty())
+    o.label_volumes_text = parse_sizes(a.max_volume, "--max-volume", "volume", "mm3", o.mesh.fill.max_volume_mm3);
   if (a.radius_edge > 0) o.mesh.fill.radius_edge = a.radius_edge;
   if (a.dihedral > 0) o.mesh.fill.dihedral_deg = a.dihedral;
   o.mesh.fill.timeout_s = a.timeout_s;
@@ -137,7 +193,8 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
     const bool is_output = path.size() > 5 && path.compare(path.size() - 5, 5, ".json") == 0;
     if (is_output) o.names_outputs.push_back(path);
     else if (o.input.names.empty()) o.input.names = path;
-    else fail_usage("two label tables", "--names " + path, "give one table to read; files that end in .json are written");
+    else
+      fail_usage("two label tables", "--names " + path, "give one table to read; files that end in .json are written");
   }
   o.write.per_label = a.per_label;
   o.write.msh2 = a.msh2;
@@ -148,11 +205,15 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   o.mesh.enhance = !e.off && !e.raw;
   o.mesh.sections.band_asked = command.get_option("--band")->count() > 0;
   if (e.raw) {  // the voxels' own outlines
-    if (o.mesh.sections.band_asked) fail_usage("--band has no meaning beside --raw", "--raw", "leave one of them out: the raw surface follows the outlines of the pixels");
+    if (o.mesh.sections.band_asked)
+      fail_usage("--band has no meaning beside --raw", "--raw",
+                 "leave one of them out: the raw surface follows the outlines of the pixels");
     o.mesh.sections.band_px = 0;
   }
   if (e.edge_length.empty() && e.deviation <= 0) o.mesh.enhance_up_to = 10000000;
-  if (!e.edge_length.empty()) o.label_edges_text = parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.mesh.enhancement.edge_length_mm);
+  if (!e.edge_length.empty())
+    o.label_edges_text =
+        parse_sizes(e.edge_length, "--edge-length", "edge length", "mm", o.mesh.enhancement.edge_length_mm);
   if (e.deviation > 0) o.mesh.enhancement.deviation_mm = e.deviation;
   if (e.edge_min > 0) o.mesh.enhancement.edge_min_mm = e.edge_min;
   if (e.edge_max > 0) o.mesh.enhancement.edge_max_mm = e.edge_max;
@@ -164,7 +225,9 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
   if (budget_asked) o.mesh.enhancement.target_tets = static_cast<std::size_t>(e.target_tets);
   o.mesh.enhancement.usual_target = !budget_asked && !sizes_asked;
   if (budget_asked && (!e.edge_length.empty() || !o.mesh.enhance))
-    fail_usage(std::string("--target-tets and ") + (!o.mesh.enhance ? "--no-enhance" : "--edge-length") + " both say how many elements there are", "command line", "give one of them");
+    fail_usage(std::string("--target-tets and ") + (!o.mesh.enhance ? "--no-enhance" : "--edge-length") +
+                   " both say how many elements there are",
+               "command line", "give one of them");
   o.option_texts = {{"label", a.input.labels.empty() ? "all" : a.input.labels},
                     {"void", a.voids.empty() ? "none" : a.voids},
                     {"merge", a.input.merge ? "on" : "off"},
@@ -184,7 +247,9 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
                     {"edge_min_mm", e.edge_min > 0 ? text_of(e.edge_min) : "default"},
                     {"edge_max_mm", e.edge_max > 0 ? text_of(e.edge_max) : "default"},
                     {"gradation", text_of(e.gradation)},
-                    {"target_tets", budget_asked ? std::to_string(e.target_tets) : sizes_asked ? "unset" : "default"},
+                    {"target_tets", budget_asked  ? std::to_string(e.target_tets)
+                                    : sizes_asked ? "unset"
+                                                  : "default"},
                     {"space", a.space},
                     {"threads", a.contours.threads > 0 ? std::to_string(a.contours.threads) : "all"},
                     {"strict", a.strict ? "on" : "off"}};
@@ -204,17 +269,20 @@ MeshRunOptions to_options(const CLI::App& command, const MeshArguments& a, Targe
 std::string layers_text(const VolumeCheck& v) {
   if (v.wedges + v.pyramids == 0) return "";
   char text[120];
-  std::snprintf(text, sizeof text, ", %zu wedges, %zu pyramids (scaled Jacobian from %.2f)", v.wedges, v.pyramids, v.wedge_scaled_jacobian_min);
+  std::snprintf(text, sizeof text, ", %zu wedges, %zu pyramids (scaled Jacobian from %.2f)", v.wedges, v.pyramids,
+                v.wedge_scaled_jacobian_min);
   return text;
 }
 
 void print_summary(const RunReport& r, const std::vector<std::string>& outputs) {
-  std::printf("input    %zu sections, %zu labels, %zu contour vertices\n", r.input.sections, r.labels.size(), r.contours.vertices);
-  std::printf("surface  %zu triangles, %zu open edges, %zu self-intersections (%s)\n", r.surface->triangles, r.surface->open_edges,
-              r.surface->self_intersections, r.surface_level.c_str());
+  std::printf("input    %zu sections, %zu labels, %zu contour vertices\n", r.input.sections, r.labels.size(),
+              r.contours.vertices);
+  std::printf("surface  %zu triangles, %zu open edges, %zu self-intersections (%s)\n", r.surface->triangles,
+              r.surface->open_edges, r.surface->self_intersections, r.surface_level.c_str());
   if (r.volume)
-    std::printf("volume   %zu tetrahedra%s, dihedral angles %.2f to %.2f degrees, closure %s\n", r.volume->tets, layers_text(*r.volume).c_str(), r.volume->dihedral_min_deg,
-                r.volume->dihedral_max_deg, r.closure.c_str());
+    std::printf("volume   %zu tetrahedra%s, dihedral angles %.2f to %.2f degrees, closure %s\n", r.volume->tets,
+                layers_text(*r.volume).c_str(), r.volume->dihedral_min_deg, r.volume->dihedral_max_deg,
+                r.closure.c_str());
   for (const std::string& o : outputs) std::printf("written  %s\n", printable(o).c_str());
 }
 
@@ -228,7 +296,9 @@ void add(CLI::App& program, const char* name, const char* description, Target ta
     const auto progress = a->terminal.make_progress();
     const RunReport report = run_mesh(options, *progress);
     if (!a->return_parameters.empty())
-      write_return_parameters(a->return_parameters, {{"closure", report.closure}, {"tetrahedra", std::to_string(report.volume ? report.volume->tets : 0)}});
+      write_return_parameters(
+          a->return_parameters,
+          {{"closure", report.closure}, {"tetrahedra", std::to_string(report.volume ? report.volume->tets : 0)}});
     if (a->terminal.quiet) return;
     print_warnings(report.warnings);
     if (a->terminal.for_slicer()) return;
@@ -250,6 +320,8 @@ MeshOptionSource add_mesh_options(CLI::App& command, int default_order, Target t
 void add_mesh_command(CLI::App& program, Purpose purpose) {
   add(program, "mesh", "Label stack to a verified volume mesh (and its surface)", Target::volume, purpose);
 }
-void add_surface_command(CLI::App& program, Purpose purpose) { add(program, "surface", "Label stack to a verified surface", Target::surface, purpose); }
+void add_surface_command(CLI::App& program, Purpose purpose) {
+  add(program, "surface", "Label stack to a verified surface", Target::surface, purpose);
+}
 
 }  // namespace stackmesh::app

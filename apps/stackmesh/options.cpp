@@ -1,4 +1,3 @@
-#include "base/warning.h"
 #include "options.h"
 
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "slicer_module.h"
 
 namespace stackmesh::app {
@@ -42,10 +42,15 @@ Caps caps_named(const std::string& name) {
 }  // namespace
 
 void InputArguments::add_to(CLI::App& command, bool selection) {
-  command.add_option("INPUT", paths, "label volume, DICOM (RTSTRUCT, SEG, series), folder or quoted glob of slices or masks, .cnt file(s) or LABEL=FILE.cnt")->required();
+  command
+      .add_option("INPUT", paths,
+                  "label volume, DICOM (RTSTRUCT, SEG, series), folder or quoted glob of slices or masks, .cnt file(s) "
+                  "or LABEL=FILE.cnt")
+      ->required();
   command.add_option("--spacing", spacing, "X,Y,Z mm of a PNG/TIFF stack");
   command.add_option("--series", series, "DICOM: series instance UID where a folder holds several");
-  command.add_flag("--allow-outside", allow_outside, "a detached header (.nhdr, .mhd) may name data files outside of its own folder");
+  command.add_flag("--allow-outside", allow_outside,
+                   "a detached header (.nhdr, .mhd) may name data files outside of its own folder");
   add_memory_option(command);
   if (!selection) return;
   command.add_option("--label", labels, "labels to use by number or name: 1,4,7-9,femur_left (default: all)");
@@ -61,7 +66,8 @@ InputOptions InputArguments::options() const {
   o.allow_outside = allow_outside;
   if (!spacing.empty()) {
     const std::vector<std::string> parts = split(spacing, ',');
-    if (parts.size() != 3) fail_usage("--spacing needs three numbers", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
+    if (parts.size() != 3)
+      fail_usage("--spacing needs three numbers", "'" + spacing + "'", "write --spacing X,Y,Z in mm");
     std::array<double, 3> s{};
     for (int i = 0; i < 3; ++i) {
       s[i] = parse_number(parts[i], "--spacing");
@@ -74,12 +80,20 @@ InputOptions InputArguments::options() const {
 
 void ContourArguments::add_to(CLI::App& command) {
   command.add_option("--axis", axis, "stacking axis: auto (the coarsest spacing), x, y or z")->capture_default_str();
-  command.add_option("--simplify", simplify_px, "largest deviation of a simplified contour in pixels (default: 0.05, with --band 0 0.5); 0 keeps every vertex")
+  command
+      .add_option("--simplify", simplify_px,
+                  "largest deviation of a simplified contour in pixels (default: 0.05, with --band 0 0.5); 0 keeps "
+                  "every vertex")
       ->check(number_in(0, 1000, "a number from 0 to 1000"));
-  command.add_option("--band", band_px, "how far a contour may leave the middle between pixel centres, in pixels: up to 0.5 every voxel centre keeps its label; more smooths "
-      "labels that were drawn slice by slice; 0 keeps the pixels' own outlines")
-      ->check(number_in(0, 3, "a number from 0 to 3"))->capture_default_str();
-  command.add_flag("--as-stored", as_stored, "take labels that are stored finer than they were made as they are stored");
+  command
+      .add_option("--band", band_px,
+                  "how far a contour may leave the middle between pixel centres, in pixels: up to 0.5 every voxel "
+                  "centre keeps its label; more smooths "
+                  "labels that were drawn slice by slice; 0 keeps the pixels' own outlines")
+      ->check(number_in(0, 3, "a number from 0 to 3"))
+      ->capture_default_str();
+  command.add_flag("--as-stored", as_stored,
+                   "take labels that are stored finer than they were made as they are stored");
   command.add_option("--threads", threads, "threads (default: all)")->check(CLI::Range(1, 1024));
 }
 
@@ -100,16 +114,17 @@ SectionOptions ContourArguments::options() const {
 
 void TerminalArguments::add_to(CLI::App& command) {
   command.add_option("--progress", progress, "auto, plain or none, on stderr; slicer, as 3D Slicer reads it on stdout")
-      ->check(CLI::IsMember({"auto", "plain", "none", "slicer"}))->capture_default_str();
+      ->check(CLI::IsMember({"auto", "plain", "none", "slicer"}))
+      ->capture_default_str();
   command.add_flag("--quiet", quiet, "only errors");
   command.add_flag("--verbose", verbose, "a line per stage, as --progress plain");
 }
 
 std::unique_ptr<Monitor> TerminalArguments::make_progress() const {
   if (for_slicer()) return make_slicer_progress();
-  return make_terminal_monitor(quiet || progress == "none" ? ProgressMode::none
-                                : verbose || progress == "plain" ? ProgressMode::plain
-                                                                 : ProgressMode::automatic);
+  return make_terminal_monitor(quiet || progress == "none"      ? ProgressMode::none
+                               : verbose || progress == "plain" ? ProgressMode::plain
+                                                                : ProgressMode::automatic);
 }
 
 CLI::Validator number_in(double low, double high, const std::string& what) {
@@ -127,14 +142,16 @@ double parse_number(const std::string& text, const std::string& option) {
   return *value;
 }
 
-std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option, const std::string& what, const std::string& unit,
+std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option,
+                                                        const std::string& what, const std::string& unit,
                                                         std::optional<double>& all) {
   const std::string mend = "write " + option + " 2.0, or per label 5=2.0,9=1.0, in " + unit;
   std::vector<std::pair<std::string, double>> per_label;
   for (const std::string& item : split(text, ',')) {
     const std::size_t at = item.find('=');
     const bool by_label = text.find('=') != std::string::npos;
-    if (by_label != (at != std::string::npos) || at == 0 || (!by_label && item != text)) fail_usage("'" + text + "' is no " + what, option, mend);
+    if (by_label != (at != std::string::npos) || at == 0 || (!by_label && item != text))
+      fail_usage("'" + text + "' is no " + what, option, mend);
     const double size = parse_number(by_label ? item.substr(at + 1) : item, option);
     if (size <= 0) fail_usage("'" + item + "' is not above 0", option, mend);
     if (by_label) per_label.emplace_back(item.substr(0, at), size);
@@ -148,13 +165,17 @@ LayerTexts parse_layers(const std::vector<std::string>& texts) {
   LayerTexts out;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('='), comma = text.find(',', equals == std::string::npos ? 0 : equals);
-    if (equals == std::string::npos || equals == 0 || comma == std::string::npos) fail_usage("'" + text + "' is no layer", "--layer", mend);
+    if (equals == std::string::npos || equals == 0 || comma == std::string::npos)
+      fail_usage("'" + text + "' is no layer", "--layer", mend);
     LayerSize size;
     size.thickness_mm = parse_number(text.substr(equals + 1, comma - equals - 1), "--layer");
-    if (!(size.thickness_mm > 0)) fail_usage("the thickness '" + text.substr(equals + 1, comma - equals - 1) + "' is not above 0", "--layer", mend);
+    if (!(size.thickness_mm > 0))
+      fail_usage("the thickness '" + text.substr(equals + 1, comma - equals - 1) + "' is not above 0", "--layer", mend);
     const std::string count = text.substr(comma + 1);
-    const bool digits = !count.empty() && count.size() <= 3 && count.find_first_not_of("0123456789") == std::string::npos;
-    if (!digits || std::stoi(count) < 1 || std::stoi(count) > 100) fail_usage("the number of wedges '" + count + "' is not a whole number from 1 to 100", "--layer", mend);
+    const bool digits =
+        !count.empty() && count.size() <= 3 && count.find_first_not_of("0123456789") == std::string::npos;
+    if (!digits || std::stoi(count) < 1 || std::stoi(count) > 100)
+      fail_usage("the number of wedges '" + count + "' is not a whole number from 1 to 100", "--layer", mend);
     size.count = std::stoi(count);
     out.emplace_back(text.substr(0, equals), size);
   }
@@ -180,24 +201,28 @@ void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::s
     per_label.emplace_back(label, LabelEndCaps{});
     return per_label.back().second;
   };
-  std::string of_ends;  // the label whose ends were named last
+  std::string of_ends;          // the label whose ends were named last
   std::set<std::string> named;  // ends
   for (const std::string& item : split(text, ',')) {
     const std::size_t at = item.find('=');
     if (at == std::string::npos || at == 0)
-      fail_usage("'" + item + "' names no label", "--caps " + text, "write --caps 5=flat,9=round, or --caps 1:high=flat,low=round for either end");
+      fail_usage("'" + item + "' names no label", "--caps " + text,
+                 "write --caps 5=flat,9=round, or --caps 1:high=flat,low=round for either end");
     const std::string left = item.substr(0, at);
     const Caps caps = caps_named(item.substr(at + 1));
     const std::size_t colon = left.rfind(':');
     const std::string end = colon == std::string::npos ? left : left.substr(colon + 1);
-    const bool names_end = (end == "low" || end == "high") && (colon != std::string::npos ? colon > 0 : !of_ends.empty());
+    const bool names_end =
+        (end == "low" || end == "high") && (colon != std::string::npos ? colon > 0 : !of_ends.empty());
     if (!names_end) {
       per_label.emplace_back(left, LabelEndCaps{caps, caps});
       of_ends.clear();
       continue;
     }
     if (colon != std::string::npos) of_ends = left.substr(0, colon);
-    if (!named.insert(of_ends + ':' + end).second) fail_usage("the " + end + " end of label '" + of_ends + "' is named twice", "--caps " + text, "name each end once");
+    if (!named.insert(of_ends + ':' + end).second)
+      fail_usage("the " + end + " end of label '" + of_ends + "' is named twice", "--caps " + text,
+                 "name each end once");
     (end == "low" ? ends_of(of_ends).low : ends_of(of_ends).high) = caps;
   }
 }
@@ -205,7 +230,8 @@ void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::s
 void add_memory_option(CLI::App& command) {
   command.add_option_function<std::string>(
       "--max-memory", [](const std::string& text) { set_memory_limit(parse_memory(text, "--max-memory")); },
-      "most memory that this process, and each that it starts, may take: 4GB, 512MB (default: what the machine or its control group has)");
+      "most memory that this process, and each that it starts, may take: 4GB, 512MB (default: what the machine or its "
+      "control group has)");
 }
 
 void print_warnings(const std::vector<Warning>& warnings) {

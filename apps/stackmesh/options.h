@@ -50,18 +50,21 @@ CLI::Validator number_in(double low, double high, const std::string& what);
 /// A finite number, or "not a number" as Error(usage) naming the option.
 double parse_number(const std::string& text, const std::string& option);
 
-/// "2.0" sets `all`; "5=2.0,9=1.0" is returned per label; all above 0. `what` it is and its `unit` are for errors. @throws Error(usage)
-std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option, const std::string& what, const std::string& unit,
+/// "2.0" sets `all`; "5=2.0,9=1.0" is returned per label; all above 0. `what` it is and its `unit` are for errors.
+/// @throws Error(usage)
+std::vector<std::pair<std::string, double>> parse_sizes(const std::string& text, const std::string& option,
+                                                        const std::string& what, const std::string& unit,
                                                         std::optional<double>& all);
 
-/// Each "LABEL=MM,COUNT": the thickness of a layer of wedges, above 0, and how many there are over each other, from 1 to 100. @throws Error(usage)
+/// Each "LABEL=MM,COUNT": the thickness of a layer of wedges, above 0, and how many there are over each other, from 1
+/// to 100. @throws Error(usage)
 LayerTexts parse_layers(const std::vector<std::string>& texts);
 
 /// "auto" (no value) or a whole number from 0 to 1000. @throws Error(usage)
 std::optional<int> parse_interpolate(const std::string& text);
 
-/// "auto", "flat", "round", or per label "5=flat,9=round", or per label and end "1:high=flat,low=round" (an end that is not named is
-/// automatic). @throws Error(usage)
+/// "auto", "flat", "round", or per label "5=flat,9=round", or per label and end "1:high=flat,low=round" (an end that is
+/// not named is automatic). @throws Error(usage)
 void parse_caps(const std::string& text, Caps& all, std::vector<std::pair<std::string, LabelEndCaps>>& per_label);
 
 /// --max-memory, which takes effect when it is read.

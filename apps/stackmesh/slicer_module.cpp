@@ -25,25 +25,37 @@ constexpr const char* kLabels = "Labels";
 constexpr const char* kSurface = "Surface";
 constexpr const char* kVolume = "Tetrahedra";
 constexpr Parameter kParameters[] = {
-    {kLabels, "label", "--label", "Labels", "Labels to mesh, by number or name: 1,4,7-9,heart. Empty: all.", "", Kind::text},
+    {kLabels, "label", "--label", "Labels", "Labels to mesh, by number or name: 1,4,7-9,heart. Empty: all.", "",
+     Kind::text},
     {kLabels, "merge", "--merge", "Merge", "The selected labels become one.", "false", Kind::flag},
-    {kLabels, "caps", "--caps", "Ends", "How labels end: auto, flat or round; per label 5=flat,9=round.", "auto", Kind::text},
+    {kLabels, "caps", "--caps", "Ends", "How labels end: auto, flat or round; per label 5=flat,9=round.", "auto",
+     Kind::text},
     {kLabels, "axis", "--axis", "Stacking axis", "auto (the coarsest spacing), x, y or z.", "auto", Kind::text},
-    {kSurface, "edgeLength", "--edge-length", "Edge length", "Uniform edge length in mm, or per label 5=2.0,9=1.0. Empty: by curvature.", "", Kind::text},
-    {kSurface, "deviation", "--deviation", "Deviation", "Sizing by curvature: largest distance to the curved surface, mm. 0: half a pixel.", "0", Kind::number},
-    {kSurface, "gradation", "--gradation", "Gradation", "Largest ratio of neighbouring edge lengths.", "1.3", Kind::number},
+    {kSurface, "edgeLength", "--edge-length", "Edge length",
+     "Uniform edge length in mm, or per label 5=2.0,9=1.0. Empty: by curvature.", "", Kind::text},
+    {kSurface, "deviation", "--deviation", "Deviation",
+     "Sizing by curvature: largest distance to the curved surface, mm. 0: half a pixel.", "0", Kind::number},
+    {kSurface, "gradation", "--gradation", "Gradation", "Largest ratio of neighbouring edge lengths.", "1.3",
+     Kind::number},
     {kSurface, "smooth", "--smooth", "Smoothing passes", "0 is none.", "5", Kind::whole},
-    {kSurface, "interpolate", "--interpolate", "Virtual sections", "Sections between far slices: auto, or a number per gap.", "auto", Kind::text},
-    {kSurface, "noEnhance", "--no-enhance", "No enhancement", "The volume of the stitched surface as it is.", "false", Kind::flag},
-    {kVolume, "maxVolume", "--max-volume", "Largest tetrahedron", "mm3. 0: graded from the surface.", "0", Kind::number},
+    {kSurface, "interpolate", "--interpolate", "Virtual sections",
+     "Sections between far slices: auto, or a number per gap.", "auto", Kind::text},
+    {kSurface, "noEnhance", "--no-enhance", "No enhancement", "The volume of the stitched surface as it is.", "false",
+     Kind::flag},
+    {kVolume, "maxVolume", "--max-volume", "Largest tetrahedron", "mm3. 0: graded from the surface.", "0",
+     Kind::number},
     {kVolume, "threads", "--threads", "Threads", "0: all.", "0", Kind::whole}};
 
 const char* tag_of(Kind kind) {
   switch (kind) {
-    case Kind::number: return "double";
-    case Kind::whole: return "integer";
-    case Kind::flag: return "boolean";
-    default: return "string";
+    case Kind::number:
+      return "double";
+    case Kind::whole:
+      return "integer";
+    case Kind::flag:
+      return "boolean";
+    default:
+      return "string";
   }
 }
 
@@ -53,9 +65,13 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string element(const std::string& tag, const std::string& text) { return "      <" + tag + ">" + escaped(text) + "</" + tag + ">\n"; }
+std::string element(const std::string& tag, const std::string& text) {
+  return "      <" + tag + ">" + escaped(text) + "</" + tag + ">\n";
+}
 
-bool starts_with(const std::string& text, const std::string& start) { return text.compare(0, start.size(), start) == 0; }
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
 
 const Parameter* find_parameter(const std::string& flag) {
   for (const Parameter& p : kParameters)
@@ -84,7 +100,8 @@ struct StageEnd {
   const char* stage;
   double end;
 };
-constexpr StageEnd kStages[] = {{"read", 0.05}, {"contours", 0.15}, {"stitch", 0.25}, {"validate", 0.3}, {"enhance", 0.7}, {"volume", 0.95}, {"write", 1}};
+constexpr StageEnd kStages[] = {{"read", 0.05},   {"contours", 0.15}, {"stitch", 0.25}, {"validate", 0.3},
+                                {"enhance", 0.7}, {"volume", 0.95},   {"write", 1}};
 
 class SlicerProgress : public Monitor {
  public:
@@ -96,7 +113,9 @@ class SlicerProgress : public Monitor {
     high_ = low_;
     for (const StageEnd& s : kStages)
       if (stage == s.stage && s.end > low_) high_ = s.end;
-    std::printf("<filter-start>\n<filter-name>%s</filter-name>\n<filter-comment>stackmesh</filter-comment>\n</filter-start>\n", stage.c_str());
+    std::printf(
+        "<filter-start>\n<filter-name>%s</filter-name>\n<filter-comment>stackmesh</filter-comment>\n</filter-start>\n",
+        stage.c_str());
     tell(low_);
   }
   void advance(double fraction) override {
@@ -107,8 +126,8 @@ class SlicerProgress : public Monitor {
   void end() override {
     const std::lock_guard<std::mutex> lock(mutex_);
     tell(high_);
-    std::printf("<filter-end>\n<filter-name>%s</filter-name>\n<filter-time>%.3f</filter-time>\n</filter-end>\n", stage_.c_str(),
-                std::chrono::duration<double>(Clock::now() - start_).count());
+    std::printf("<filter-end>\n<filter-name>%s</filter-name>\n<filter-time>%.3f</filter-time>\n</filter-end>\n",
+                stage_.c_str(), std::chrono::duration<double>(Clock::now() - start_).count());
     std::fflush(stdout);
   }
 
@@ -131,28 +150,35 @@ std::string slicer_description() {
   std::string xml =
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<executable>\n  <category>Segmentation</category>\n"
       "  <title>Tetrahedral mesh of labels (stackmesh)</title>\n"
-      "  <description>Meshes every label of a label map with tetrahedra. Labels that touch share their faces, every surface is closed and free "
+      "  <description>Meshes every label of a label map with tetrahedra. Labels that touch share their faces, every "
+      "surface is closed and free "
       "of self-intersections, and this is checked before the mesh is written.</description>\n"
-      "  <version>" STACKMESH_VERSION "</version>\n  <documentation-url></documentation-url>\n  <license>AGPL-3.0-or-later</license>\n"
+      "  <version>" STACKMESH_VERSION
+      "</version>\n  <documentation-url></documentation-url>\n  <license>AGPL-3.0-or-later</license>\n"
       "  <contributor></contributor>\n"
-      "  <parameters>\n    <label>Input and output</label>\n    <description>What is meshed, and where the mesh goes.</description>\n"
+      "  <parameters>\n    <label>Input and output</label>\n    <description>What is meshed, and where the mesh "
+      "goes.</description>\n"
       "    <image type=\"label\" fileExtensions=\".nrrd,.nii.gz,.nii,.mha\">\n";
-  xml += element("name", "inputLabels") + element("label", "Label map") + element("description", "The labels to mesh; 0 is the background.") +
-         element("channel", "input") + element("index", "0");
+  xml += element("name", "inputLabels") + element("label", "Label map") +
+         element("description", "The labels to mesh; 0 is the background.") + element("channel", "input") +
+         element("index", "0");
   xml += "    </image>\n    <geometry type=\"model\" fileExtensions=\".vtu,.vtk,.vtp,.stl,.ply,.obj\">\n";
   xml += element("name", "outputMesh") + element("label", "Mesh") +
-         element("description", "Tetrahedra (.vtu, .vtk) with their labels, or the surface (.vtp, .stl, .ply, .obj); LPS mm.") +
+         element("description",
+                 "Tetrahedra (.vtu, .vtk) with their labels, or the surface (.vtp, .stl, .ply, .obj); LPS mm.") +
          element("channel", "output") + element("index", "1");
   xml += "    </geometry>\n  </parameters>\n";
   const char* group = nullptr;
   for (const Parameter& p : kParameters) {
     if (p.group != group) {
       if (group != nullptr) xml += "  </parameters>\n";
-      xml += "  <parameters>\n    <label>" + std::string(p.group) + "</label>\n    <description>" + p.group + "</description>\n";
+      xml += "  <parameters>\n    <label>" + std::string(p.group) + "</label>\n    <description>" + p.group +
+             "</description>\n";
       group = p.group;
     }
-    xml += "    <" + std::string(tag_of(p.kind)) + ">\n" + element("name", p.name) + element("longflag", p.option) + element("label", p.label) +
-           element("description", p.description) + element("default", p.initial) + "    </" + tag_of(p.kind) + ">\n";
+    xml += "    <" + std::string(tag_of(p.kind)) + ">\n" + element("name", p.name) + element("longflag", p.option) +
+           element("label", p.label) + element("description", p.description) + element("default", p.initial) +
+           "    </" + tag_of(p.kind) + ">\n";
   }
   return xml + "  </parameters>\n</executable>\n";
 }
@@ -161,7 +187,8 @@ bool is_slicer_call(int argc, char** argv) {
   if (argc < 3 || argv[1][0] != '-') {
     // Input and output alone are told from a command by Slicer's own flags only.
     for (int i = 1; i < argc; ++i)
-      if (starts_with(argv[i], "--processinformationaddress") || starts_with(argv[i], "--returnparameterfile")) return true;
+      if (starts_with(argv[i], "--processinformationaddress") || starts_with(argv[i], "--returnparameterfile"))
+        return true;
     return false;
   }
   return find_parameter(split_flags(argc, argv)[0]) != nullptr || starts_with(argv[1], "--processinformationaddress") ||
@@ -181,12 +208,14 @@ std::vector<std::string> translate_slicer_call(int argc, char** argv) {
     if (word == "--echo") continue;
     const Parameter* p = find_parameter(word);
     const bool slicers_own = word == "--processinformationaddress" || word == "--returnparameterfile";
-    if (p == nullptr && !slicers_own) fail_usage("unknown flag '" + word + "'", "command line of a Slicer module", "see stackmesh --xml");
+    if (p == nullptr && !slicers_own)
+      fail_usage("unknown flag '" + word + "'", "command line of a Slicer module", "see stackmesh --xml");
     if (p != nullptr && p->kind == Kind::flag) {
       options.push_back(p->option);
       continue;
     }
-    if (++i == words.size()) fail_usage("the flag " + word + " has no value", "command line of a Slicer module", "see stackmesh --xml");
+    if (++i == words.size())
+      fail_usage("the flag " + word + " has no value", "command line of a Slicer module", "see stackmesh --xml");
     if (word == "--returnparameterfile") return_parameters = words[i];
     if (p == nullptr || words[i] == p->initial || words[i].empty()) continue;
     if (p->kind != Kind::text && std::strtod(words[i].c_str(), nullptr) == std::strtod(p->initial, nullptr)) continue;
@@ -194,14 +223,17 @@ std::vector<std::string> translate_slicer_call(int argc, char** argv) {
     options.push_back(words[i]);
   }
   if (files.size() != 2)
-    fail_usage(std::to_string(files.size()) + " files where an input and an output belong", "command line of a Slicer module", "see stackmesh --xml");
+    fail_usage(std::to_string(files.size()) + " files where an input and an output belong",
+               "command line of a Slicer module", "see stackmesh --xml");
   std::vector<std::string> arguments = {"mesh", files[0], "-o", files[1], "--progress", "slicer"};
   if (!return_parameters.empty()) arguments.insert(arguments.end(), {"--return-parameters", return_parameters});
   arguments.insert(arguments.end(), options.begin(), options.end());
   return arguments;
 }
 
-std::unique_ptr<Monitor> make_slicer_progress() { return std::make_unique<SlicerProgress>(); }
+std::unique_ptr<Monitor> make_slicer_progress() {
+  return std::make_unique<SlicerProgress>();
+}
 
 void write_return_parameters(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
   AtomicFiles files;

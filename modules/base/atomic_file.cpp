@@ -73,7 +73,9 @@ std::string folder_of(const std::string& path) {
 long process_of(const std::string& rest) {
   const std::size_t dash = rest.find('-');
   if (dash == 0 || dash == std::string::npos || dash + 1 == rest.size() || dash > 10) return 0;
-  if (rest.find_first_not_of("0123456789") != dash || rest.find_first_not_of("0123456789", dash + 1) != std::string::npos) return 0;
+  if (rest.find_first_not_of("0123456789") != dash ||
+      rest.find_first_not_of("0123456789", dash + 1) != std::string::npos)
+    return 0;
   return std::atol(rest.c_str());
 }
 
@@ -125,7 +127,9 @@ void remove_unfinished_files() {
 }
 
 RemovedOnSignals::RemovedOnSignals(const std::string& path) : slot_(remember(path)) {}
-RemovedOnSignals::~RemovedOnSignals() { forget(slot_); }
+RemovedOnSignals::~RemovedOnSignals() {
+  forget(slot_);
+}
 
 void end_on_signals() {
   struct sigaction action {};
@@ -154,7 +158,8 @@ void AtomicFiles::check(const std::string& path) {
   if (::stat(folder.c_str(), &info) != 0) fail(path, errno);
   if (!S_ISDIR(info.st_mode)) fail(path, ENOTDIR);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(path, errno);
-  const std::size_t name = target.size() - (target.find_last_of('/') == std::string::npos ? 0 : target.find_last_of('/') + 1);
+  const std::size_t name =
+      target.size() - (target.find_last_of('/') == std::string::npos ? 0 : target.find_last_of('/') + 1);
   if (name > 235) fail(path, ENAMETOOLONG);  // with ".partPID-N" behind it
   remove_left_over(target);
 }
@@ -175,7 +180,8 @@ void AtomicFiles::write(const std::string& path, const std::function<void(std::F
     pending_.pop_back();
   };
   if (replaces) {
-    if (::fchown(descriptor, info.st_uid, info.st_gid) != 0) errno = 0;  // another owner's file: its mode is kept at least
+    // another owner's file: its mode is kept at least
+    if (::fchown(descriptor, info.st_uid, info.st_gid) != 0) errno = 0;
     ::fchmod(descriptor, info.st_mode & 07777);
   }
   std::FILE* file = ::fdopen(descriptor, "wb");

@@ -49,7 +49,8 @@ void Beside::finish() {
 double Beside::cpu_s() const {
   const double past = past_cpu_s_;
   clockid_t clock;
-  if (!running_ || pthread_getcpuclockid(const_cast<std::thread&>(thread_).native_handle(), &clock) != 0) return past_cpu_s_;
+  if (!running_ || pthread_getcpuclockid(const_cast<std::thread&>(thread_).native_handle(), &clock) != 0)
+    return past_cpu_s_;
   return past + seconds_of(clock);
 }
 

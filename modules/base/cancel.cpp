@@ -7,10 +7,16 @@ namespace {
 thread_local const Monitor* current = nullptr;
 }  // namespace
 
-CancelScope::CancelScope(const Monitor* monitor) : outer_(current) { current = monitor; }
-CancelScope::~CancelScope() { current = outer_; }
+CancelScope::CancelScope(const Monitor* monitor) : outer_(current) {
+  current = monitor;
+}
+CancelScope::~CancelScope() {
+  current = outer_;
+}
 
-const Monitor* cancelling_monitor() { return current; }
+const Monitor* cancelling_monitor() {
+  return current;
+}
 
 void stop_if_cancelled() {
   if (current != nullptr && current->cancelled()) throw Error(ErrorKind::cancelled, "the run was cancelled", "", "");

@@ -3,7 +3,8 @@
 
 namespace stackmesh {
 
-/// While it lives, stop_if_cancelled() on this thread, and on the threads that parallel_for() takes from it, asks `monitor`. Scopes nest; null: nothing is asked.
+/// While it lives, stop_if_cancelled() on this thread, and on the threads that parallel_for() takes from it, asks
+/// `monitor`. Scopes nest; null: nothing is asked.
 class CancelScope {
  public:
   explicit CancelScope(const Monitor* monitor);

@@ -12,9 +12,12 @@ std::string join(const std::string& what, const std::string& where, const std::s
 }
 }  // namespace
 
-Error::Error(ErrorKind kind, const std::string& what_is_wrong, const std::string& where,
-             const std::string& how_to_mend)
-    : std::runtime_error(join(what_is_wrong, where, how_to_mend)), kind_(kind), problem_(printable(what_is_wrong)), where_(printable(where)), mend_(printable(how_to_mend)) {}
+Error::Error(ErrorKind kind, const std::string& what_is_wrong, const std::string& where, const std::string& how_to_mend)
+    : std::runtime_error(join(what_is_wrong, where, how_to_mend)),
+      kind_(kind),
+      problem_(printable(what_is_wrong)),
+      where_(printable(where)),
+      mend_(printable(how_to_mend)) {}
 
 void fail_usage(const std::string& what, const std::string& where, const std::string& mend) {
   throw Error(ErrorKind::usage, what, where, mend);

@@ -25,13 +25,18 @@ fs::path own_file() {
   return fs::canonical(info.dli_fname, ignored);
 }
 
-constexpr const char* again = "install stackmesh again as a whole, or let STACKMESH_PARTS name the folder that holds it";
+constexpr const char* again =
+    "install stackmesh again as a whole, or let STACKMESH_PARTS name the folder that holds it";
 
 void* load(const std::string& part, const std::string& purpose) {
   const std::string name = part + ".so";
   const char* const folder = std::getenv("STACKMESH_PARTS");
-  const std::string path = folder != nullptr && *folder != '\0' ? (fs::path(folder) / name).string() : find_installed(name, R_OK);
-  const auto fail = [&](const std::string& why) { throw Error(ErrorKind::no_result, "the part of stackmesh for " + purpose + " " + why, path.empty() ? name : path, again); };
+  const std::string path =
+      folder != nullptr && *folder != '\0' ? (fs::path(folder) / name).string() : find_installed(name, R_OK);
+  const auto fail = [&](const std::string& why) {
+    throw Error(ErrorKind::no_result, "the part of stackmesh for " + purpose + " " + why, path.empty() ? name : path,
+                again);
+  };
   if (path.empty() || ::access(path.c_str(), R_OK) != 0) fail("is not installed");
   void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
@@ -72,7 +77,9 @@ void* function_of_part(const std::string& part, const char* function, const std:
   auto it = loaded.find(part);
   if (it == loaded.end()) it = loaded.emplace(part, load(part, purpose)).first;
   void* const found = ::dlsym(it->second, function);
-  if (found == nullptr) throw Error(ErrorKind::no_result, "the part of stackmesh for " + purpose + " lacks " + function, part + ".so", again);
+  if (found == nullptr)
+    throw Error(ErrorKind::no_result, "the part of stackmesh for " + purpose + " lacks " + function, part + ".so",
+                again);
   return found;
 }
 

@@ -14,14 +14,19 @@ namespace {
 
 constexpr int kDeepest = 64;
 
-bool begins_number(char c) { return c == '-' || (c >= '0' && c <= '9'); }
-bool is_in_number(char c) { return begins_number(c) || c == '+' || c == '.' || c == 'e' || c == 'E'; }
+bool begins_number(char c) {
+  return c == '-' || (c >= '0' && c <= '9');
+}
+bool is_in_number(char c) {
+  return begins_number(c) || c == '+' || c == '.' || c == 'e' || c == 'E';
+}
 
 }  // namespace
 
 std::string read_json_text(const std::string& path, const std::string& what, const std::string& mend) {
   struct stat info;
-  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) fail_input(what + " is no regular file", path, "give a file");
+  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+    fail_input(what + " is no regular file", path, "give a file");
   std::ifstream file(path, std::ios::binary);
   if (!file) fail_input(what + " cannot be read", path, mend);
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -43,7 +48,8 @@ std::string read_json_text(const std::string& path, const std::string& what, con
     } else {
       if (c == '[' || c == '{') ++depth;
       if (c == ']' || c == '}') --depth;
-      if (depth > kDeepest) fail_input(what + " is nested more than " + std::to_string(kDeepest) + " deep", where(), mend);
+      if (depth > kDeepest)
+        fail_input(what + " is nested more than " + std::to_string(kDeepest) + " deep", where(), mend);
       ++i;
     }
   }

@@ -28,13 +28,15 @@ std::uint64_t number_in(const std::string& path, std::uint64_t none) {
 
 std::uint64_t machine_memory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
-  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size) : std::numeric_limits<std::uint64_t>::max();
+  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size)
+                               : std::numeric_limits<std::uint64_t>::max();
 }
 
 /// The smallest bound of the control groups that this process is in (version 2, then 1).
 std::uint64_t group_memory() {
   constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t least = std::min(number_in("/sys/fs/cgroup/memory.max", none), number_in("/sys/fs/cgroup/memory/memory.limit_in_bytes", none));
+  std::uint64_t least = std::min(number_in("/sys/fs/cgroup/memory.max", none),
+                                 number_in("/sys/fs/cgroup/memory/memory.limit_in_bytes", none));
   std::ifstream groups("/proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
     if (line.compare(0, 3, "0::") != 0) continue;
@@ -50,7 +52,8 @@ std::uint64_t process_memory() {
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
     rlimit limit{};
     for (const auto which : {RLIMIT_AS, RLIMIT_DATA})
-      if (::getrlimit(which, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);
+      if (::getrlimit(which, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        bytes = std::min<std::uint64_t>(bytes, limit.rlim_cur);
     return bytes;
   }();
   return least;
@@ -94,7 +97,9 @@ void require_memory(std::uint64_t bytes, const std::string& what, const std::str
   const std::uint64_t used = memory_in_use(), limit = memory_limit();
   if (bytes <= limit && used <= limit - bytes) return;
   throw Error(ErrorKind::no_result,
-              what + " need " + memory_text(bytes) + (used > (64u << 20) ? " beside the " + memory_text(used) + " in use" : "") + ", of " + memory_text(limit) + " that may be taken",
+              what + " need " + memory_text(bytes) +
+                  (used > (64u << 20) ? " beside the " + memory_text(used) + " in use" : "") + ", of " +
+                  memory_text(limit) + " that may be taken",
               where, mend + ", or give more memory" + (asked.load() > 0 ? " with --max-memory" : ""));
 }
 
@@ -103,7 +108,7 @@ std::uint64_t parse_memory(const std::string& text, const std::string& option) {
   const double value = std::strtod(text.c_str(), &end);
   std::string unit = lower_case(end);
   unit.erase(std::remove(unit.begin(), unit.end(), ' '), unit.end());
-  const double factor = unit.empty() || unit == "b"                        ? 1
+  const double factor = unit.empty() || unit == "b"                    ? 1
                         : unit == "k" || unit == "kb" || unit == "kib" ? 1024.0
                         : unit == "m" || unit == "mb" || unit == "mib" ? 1048576.0
                         : unit == "g" || unit == "gb" || unit == "gib" ? 1073741824.0

@@ -57,8 +57,7 @@ Monitor& no_monitor() {
 
 std::unique_ptr<Monitor> make_terminal_monitor(ProgressMode mode) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (mode == ProgressMode::none || (mode == ProgressMode::automatic && !terminal))
-    return std::make_unique<Monitor>();
+  if (mode == ProgressMode::none || (mode == ProgressMode::automatic && !terminal)) return std::make_unique<Monitor>();
   return std::make_unique<TerminalMonitor>(mode == ProgressMode::automatic);
 }
 

@@ -7,7 +7,8 @@ namespace stackmesh {
 /// How progress is shown. `automatic`: a live line on a terminal, nothing in a pipe.
 enum class ProgressMode { automatic, plain, none };
 
-/// Watches a long run: it is told what the run does, and may end it. The default does nothing, so a library call stays silent.
+/// Watches a long run: it is told what the run does, and may end it. The default does nothing, so a library call stays
+/// silent.
 class Monitor {
  public:
   virtual ~Monitor() = default;
@@ -17,7 +18,8 @@ class Monitor {
   virtual void advance(double fraction) { (void)fraction; }
   /// The stage has ended.
   virtual void end() {}
-  /// Whether the run shall end: soon after this becomes true, it throws Error(cancelled). Called often and from any thread, so it must be quick.
+  /// Whether the run shall end: soon after this becomes true, it throws Error(cancelled). Called often and from any
+  /// thread, so it must be quick.
   virtual bool cancelled() const { return false; }
 };
 

@@ -33,10 +33,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
       }
     });
   };
-  if (n == tbb::info::default_concurrency())
-    loop();  // the arena that is there already
-  else
-    tbb::task_arena(n).execute(loop);
+  if (n == tbb::info::default_concurrency()) loop();  // the arena that is there already
+  else tbb::task_arena(n).execute(loop);
 }
 
 }  // namespace stackmesh

@@ -11,7 +11,8 @@ double cpu_seconds() {
   for (int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
     rusage usage{};
     getrusage(who, &usage);
-    for (const timeval& t : {usage.ru_utime, usage.ru_stime}) total += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    for (const timeval& t : {usage.ru_utime, usage.ru_stime})
+      total += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   }
   return total;
 }
@@ -28,7 +29,9 @@ void add_stage_time(std::vector<StageTime>& stages, const StageTime& time) {
 }
 
 std::size_t StageClock::stage(const std::string& name) {
-  const std::size_t at = std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; }) - stages_.begin();
+  const std::size_t at =
+      std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; }) -
+      stages_.begin();
   if (at == stages_.size()) stages_.push_back({name, 0, 0});
   return at;
 }

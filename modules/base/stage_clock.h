@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "base/monitor.h"
 #include "base/beside.h"
+#include "base/monitor.h"
 #include "base/stage_time.h"
 
 namespace stackmesh {
@@ -23,8 +23,8 @@ class StageClock {
     return stage();
   }
 
-  /// Begins a piece of the stage `name` beside the stages that follow: its CPU time counts there, and of its wall time only
-  /// what finish_beside() waits for. One at a time.
+  /// Begins a piece of the stage `name` beside the stages that follow: its CPU time counts there, and of its wall time
+  /// only what finish_beside() waits for. One at a time.
   void begin_beside(const std::string& name, std::function<void()> work, bool at_once);
   /// Until it is done; throws what it threw.
   void finish_beside();

@@ -20,11 +20,14 @@ std::string printable(std::string_view text) {
     if (c == 0xc2 && after >= 0x80 && after < 0xa0) {
       out += ' ';
       ++i;
-    } else if (c == 0xe2 && after == 0x80 && i + 2 < text.size() && (static_cast<unsigned char>(text[i + 2]) & 0xfe) == 0xa8) {  // line and paragraph separators
+      // line and paragraph separators
+    } else if (c == 0xe2 && after == 0x80 && i + 2 < text.size() &&
+               (static_cast<unsigned char>(text[i + 2]) & 0xfe) == 0xa8) {
       out += ' ';
       i += 2;
     } else {
-      const bool lone = c >= 0x80 && c < 0xa0 && (i == 0 || static_cast<unsigned char>(text[i - 1]) < 0x80);  // a control character outside of UTF-8
+      // a control character outside of UTF-8
+      const bool lone = c >= 0x80 && c < 0xa0 && (i == 0 || static_cast<unsigned char>(text[i - 1]) < 0x80);
       out += c < ' ' || c == 127 || lone ? ' ' : text[i];
     }
   }
@@ -67,7 +70,8 @@ std::size_t letters_apart(std::string_view a, std::string_view b) {
 
 std::string nearest_names(std::string_view name, const std::vector<std::string>& known, std::size_t most) {
   std::vector<std::pair<std::size_t, std::size_t>> order;  // letters apart, place
-  for (std::size_t i = 0; i < known.size(); ++i) order.push_back({letters_apart(lower_case(name), lower_case(known[i])), i});
+  for (std::size_t i = 0; i < known.size(); ++i)
+    order.push_back({letters_apart(lower_case(name), lower_case(known[i])), i});
   std::sort(order.begin(), order.end());
   std::string text;
   for (std::size_t i = 0; i < std::min(most, order.size()); ++i) text += (i > 0 ? ", " : "") + known[order[i].second];

@@ -33,14 +33,19 @@ void settle(pid_t parent) {
 }
 
 [[noreturn]] void fail_to_start(int code) {
-  throw Error(ErrorKind::no_result, std::string("the system gives no process: ") + std::strerror(code), "this machine", "allow more processes (ulimit -u) or give fewer --jobs");
+  throw Error(ErrorKind::no_result, std::string("the system gives no process: ") + std::strerror(code), "this machine",
+              "allow more processes (ulimit -u) or give fewer --jobs");
 }
 
-double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
 
 }  // namespace
 
-Child::Child(Child&& other) noexcept { *this = std::move(other); }
+Child::Child(Child&& other) noexcept {
+  *this = std::move(other);
+}
 
 Child& Child::operator=(Child&& other) noexcept {
   std::swap(pid_, other.pid_);
@@ -143,7 +148,9 @@ std::string Child::text() {
   return text;
 }
 
-double Child::age_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count(); }
+double Child::age_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+}
 
 CommandOutput output_of(const std::vector<std::string>& words) {
   int ends[2];

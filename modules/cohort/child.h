@@ -10,12 +10,12 @@ namespace stackmesh {
 
 /// How a child process ended.
 struct ChildEnd {
-  int code = 0;  ///< exit code, or minus the signal that ended it
+  int code = 0;                               ///< exit code, or minus the signal that ended it
   double wall_s = 0, cpu_s = 0, peak_mb = 0;  ///< with the processes that it has waited for
 };
 
-/// A process in a group of its own, which the kernel kills when the thread that started it ends, however that ends. The whole group is
-/// killed when this object goes.
+/// A process in a group of its own, which the kernel kills when the thread that started it ends, however that ends. The
+/// whole group is killed when this object goes.
 class Child {
  public:
   Child() = default;
@@ -23,7 +23,8 @@ class Child {
   Child& operator=(Child&& other) noexcept;
   ~Child();
 
-  /// Starts a program; what it prints goes to the file `log`. @throws Error(no_result) where the system gives no process
+  /// Starts a program; what it prints goes to the file `log`. @throws Error(no_result) where the system gives no
+  /// process
   static Child start(const std::vector<std::string>& words, const std::string& log);
   /// Runs `work` in a copy of this process, which must have one thread; what it returns can be read from text().
   static Child fork_for(const std::function<std::string()>& work);
@@ -52,7 +53,8 @@ struct CommandOutput {
 };
 CommandOutput output_of(const std::vector<std::string>& words);
 
-/// Lets SIGCHLD wake wait_for_children(), and SIGINT, SIGTERM and SIGHUP be told by it instead of ending the program, while it lives.
+/// Lets SIGCHLD wake wait_for_children(), and SIGINT, SIGTERM and SIGHUP be told by it instead of ending the program,
+/// while it lives.
 class ChildSignals {
  public:
   ChildSignals();

@@ -21,10 +21,10 @@ struct KnownOption {
 
 /// The command that makes each case, as the program describes it.
 struct CaseCommand {
-  std::string name = "mesh";           ///< mesh, surface or fem
-  std::string version;                 ///< of the program
-  std::vector<KnownOption> options;    ///< that a case may have
-  std::vector<std::string> formats;    ///< endings of the files that a case gets: {"vtu"}
+  std::string name = "mesh";         ///< mesh, surface or fem
+  std::string version;               ///< of the program
+  std::vector<KnownOption> options;  ///< that a case may have
+  std::vector<std::string> formats;  ///< endings of the files that a case gets: {"vtu"}
   /// Tells whether a call with these words would be understood. @throws Error(usage) where not
   std::function<void(const std::vector<std::string>& words)> check;
 };

@@ -37,7 +37,8 @@ std::string bytes_of(const std::string& path) {
 }
 
 [[noreturn]] void fail_at(const std::string& path, int code) {
-  fail_output(std::string("cannot write: ") + std::strerror(code), path, "check the rights and the free space, or choose another folder");
+  fail_output(std::string("cannot write: ") + std::strerror(code), path,
+              "check the rights and the free space, or choose another folder");
 }
 
 /// What was written is on the disk before a name says that it is whole.
@@ -52,7 +53,8 @@ void rename_folder(const std::string& from, const std::string& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) fail_at(to, errno);
 }
 
-/// Puts the folder `from` into the place of `to`, in one step where the file system can; what was there is at `from` afterwards.
+/// Puts the folder `from` into the place of `to`, in one step where the file system can; what was there is at `from`
+/// afterwards.
 void exchange_folders(const std::string& from, const std::string& to) {
   constexpr unsigned kExchange = 2;  // RENAME_EXCHANGE
   if (::syscall(SYS_renameat2, AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), kExchange) == 0) return;
@@ -104,9 +106,11 @@ std::string utc_now() {
 
 void CohortFolder::prepare() const {
   std::error_code error;
-  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) fail_output("the output is a file", path_, "name a folder");
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error))
+    fail_output("the output is a file", path_, "name a folder");
   if (fs::is_directory(path_, error) && !fs::is_directory(own(""), error) && !fs::is_empty(path_, error)) {
-    for (const auto& entry : fs::directory_iterator(path_, error))  // those that workflow engines make for their outputs are empty
+    // those that workflow engines make for their outputs are empty
+    for (const auto& entry : fs::directory_iterator(path_, error))
       if (!entry.is_directory(error) || !fs::is_empty(entry.path(), error))
         fail_usage("the folder holds other files", path_, "name a new folder for the cohort, or an empty one");
   }
@@ -120,7 +124,8 @@ CohortPlan read_plan(const std::string& path) {
   try {
     return cohort_plan_of(text);
   } catch (const std::exception&) {
-    fail_input("the plan of the cohort is damaged", path, "remove that file and run the same batch command again: finished cases stay");
+    fail_input("the plan of the cohort is damaged", path,
+               "remove that file and run the same batch command again: finished cases stay");
   }
 }
 
@@ -135,7 +140,8 @@ void CohortFolder::check_source(const CohortPlan& plan) const {
   if (!before || before->source == plan.source) return;
   if (!plan.source_sha256.empty() && before->source_sha256 == plan.source_sha256) return;
   fail_usage("the folder holds the cases of another manifest, '" + before->source + "'", path_,
-             "name another folder; if that manifest was moved and edited, remove " + own("plan.json") + " (finished cases stay)");
+             "name another folder; if that manifest was moved and edited, remove " + own("plan.json") +
+                 " (finished cases stay)");
 }
 
 void CohortFolder::write_plan(const CohortPlan& plan) const {
@@ -168,11 +174,13 @@ std::string CohortFolder::begin(const std::string& id, const std::string& key) c
 }
 
 void CohortFolder::finish(const std::string& work, const CaseRecord& record) const {
-  const std::string text = to_json(record), final_path = record.is_done ? case_folder(record.id) : failed_folder(record.id);
+  const std::string text = to_json(record),
+                    final_path = record.is_done ? case_folder(record.id) : failed_folder(record.id);
   std::error_code ignored;
   if (!record.is_done) {  // what another key made stays, but not as this case's result
     remove_folder(work + "/" + kPrevious);
-    if (fs::exists(failed_folder(record.id) + "/" + kPrevious, ignored)) rename_folder(failed_folder(record.id) + "/" + kPrevious, work + "/" + kPrevious);
+    if (fs::exists(failed_folder(record.id) + "/" + kPrevious, ignored))
+      rename_folder(failed_folder(record.id) + "/" + kPrevious, work + "/" + kPrevious);
     if (this->record(record.id)) {
       remove_folder(work + "/" + kPrevious);
       rename_folder(case_folder(record.id), work + "/" + kPrevious);
@@ -180,7 +188,8 @@ void CohortFolder::finish(const std::string& work, const CaseRecord& record) con
   }
   for (const auto& entry : fs::directory_iterator(work, ignored)) bring_to_disk(entry.path().string());
   AtomicFiles files;
-  files.write(work + (record.is_done ? "/done" : "/failed.json"), [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
+  files.write(work + (record.is_done ? "/done" : "/failed.json"),
+              [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
   files.commit();
   bring_to_disk(work);
   if (fs::exists(final_path, ignored)) {
@@ -200,13 +209,15 @@ void CohortFolder::remove_left_over() const {
     const std::string name = it->path().filename().string();
     const std::size_t mark = name.find(kWorkMark);
     // A whole one is adopted when its case's turn comes.
-    if (name[0] == '.' && mark != std::string::npos && mark > 1 && !fs::exists(it->path() / "done", none)) left.push_back(it->path().string());
+    if (name[0] == '.' && mark != std::string::npos && mark > 1 && !fs::exists(it->path() / "done", none))
+      left.push_back(it->path().string());
   }
   for (const std::string& path : left) remove_folder(path);
 }
 
 void CohortFolder::note(const std::string& event, const std::string& id, const std::string& key) const {
-  const std::string line = utc_now() + "\t" + host_name() + "\t" + std::to_string(::getpid()) + "\t" + event + "\t" + id + "\t" + key + "\n";
+  const std::string line =
+      utc_now() + "\t" + host_name() + "\t" + std::to_string(::getpid()) + "\t" + event + "\t" + id + "\t" + key + "\n";
   const int file = ::open(own("journal.tsv").c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) return;
   if (::write(file, line.data(), line.size()) < 0) errno = 0;  // the journal tells; nothing depends on it
@@ -226,10 +237,12 @@ CohortLock::CohortLock(const CohortFolder& folder, bool shared) {
   if (!held) {
     const std::string holder = printable(bytes_of(path));
     ::close(file_);
-    fail_usage("another run works in this folder" + (holder.empty() ? std::string() : ", " + holder), folder.path(), "wait until it has ended, or stop it");
+    fail_usage("another run works in this folder" + (holder.empty() ? std::string() : ", " + holder), folder.path(),
+               "wait until it has ended, or stop it");
   }
   const std::string text = "process " + std::to_string(::getpid()) + " on " + host_name();
-  if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, text.data(), text.size(), 0) < 0) errno = 0;  // for the message only
+  // for the message only
+  if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, text.data(), text.size(), 0) < 0) errno = 0;
 }
 
 CohortLock::~CohortLock() {

@@ -15,8 +15,8 @@ constexpr char kThumbnailFolder[] = "cohort_thumbnails";  ///< beside the cases
 struct CaseRecord {
   std::string id, key;
   bool is_done = false;
-  int exit_code = 0;          ///< of the program; minus the signal that ended it
-  std::string reason;         ///< of a failure, one line
+  int exit_code = 0;   ///< of the program; minus the signal that ended it
+  std::string reason;  ///< of a failure, one line
   std::string version, command;
   std::vector<std::string> inputs, options;  ///< options as words
   std::string input_sha256;
@@ -38,8 +38,9 @@ struct CohortPlan {
 /// @throws Error(input) for a damaged or missing file
 CohortPlan read_plan(const std::string& path);
 
-/// The folder of a cohort. A case is the folder ID/, which appears whole, with the file `done` in it; a failed one is ID.failed/.
-/// Work goes on in hidden folders .ID.work-HOST-PID, which are renamed at the end; .cohort/ holds plan, lock and journal.
+/// The folder of a cohort. A case is the folder ID/, which appears whole, with the file `done` in it; a failed one is
+/// ID.failed/. Work goes on in hidden folders .ID.work-HOST-PID, which are renamed at the end; .cohort/ holds plan,
+/// lock and journal.
 class CohortFolder {
  public:
   explicit CohortFolder(std::string path) : path_(std::move(path)) {}
@@ -48,7 +49,8 @@ class CohortFolder {
   std::string case_folder(const std::string& id) const { return path_ + "/" + id; }
   std::string failed_folder(const std::string& id) const { return path_ + "/" + id + kFailedEnding; }
 
-  /// Makes the folder where it is missing. @throws Error(output) where that cannot be, or it holds other files than a cohort's
+  /// Makes the folder where it is missing. @throws Error(output) where that cannot be, or it holds other files than a
+  /// cohort's
   void prepare() const;
 
   /// The plan that it holds, if it holds one. @throws Error(input) for a damaged one
@@ -58,14 +60,16 @@ class CohortFolder {
   void check_source(const CohortPlan& plan) const;
   void write_plan(const CohortPlan& plan) const;
 
-  /// The record of a case that is done, or, with `failed`, of one that failed; none where there is no such folder or it is not whole.
+  /// The record of a case that is done, or, with `failed`, of one that failed; none where there is no such folder or it
+  /// is not whole.
   std::optional<CaseRecord> record(const std::string& id, bool failed = false) const;
 
-  /// An empty hidden folder for work on a case. Those that earlier runs left are removed; a whole one that only lacked its last
-  /// rename is adopted first. @return its path; "" where a case with this key was adopted
+  /// An empty hidden folder for work on a case. Those that earlier runs left are removed; a whole one that only lacked
+  /// its last rename is adopted first. @return its path; "" where a case with this key was adopted
   std::string begin(const std::string& id, const std::string& key) const;
-  /// Ends a case: writes its record, brings files to the disk, renames the folder. What the id had before goes: an earlier result
-  /// when the case is done; when it failed, an earlier result of another key moves into ID.failed/previous.
+  /// Ends a case: writes its record, brings files to the disk, renames the folder. What the id had before goes: an
+  /// earlier result when the case is done; when it failed, an earlier result of another key moves into
+  /// ID.failed/previous.
   void finish(const std::string& work, const CaseRecord& record) const;
   /// Removes the hidden folders that ended runs left.
   void remove_left_over() const;

@@ -38,13 +38,15 @@ double number(const Json& j, const char* group, const char* name) {
 /// Reads what a case's report says, into its row and the cohort's labels.
 class ReportReader {
  public:
-  ReportReader(const Json& report, CohortRow& row, std::map<int, CohortLabel>& labels) : r_(report), row_(row), labels_(labels) {}
+  ReportReader(const Json& report, CohortRow& row, std::map<int, CohortLabel>& labels)
+      : r_(report), row_(row), labels_(labels) {}
 
   void read() {
     const std::vector<Metric>& metrics = cohort_metrics();
     row_.verdict = "pass";
     for (const Json& v : r_.at("verdicts")) {
-      const std::string status = v.at("status"), text = v.at("title").get<std::string>() + ": " + v.at("figure").get<std::string>();
+      const std::string status = v.at("status"),
+                        text = v.at("title").get<std::string>() + ": " + v.at("figure").get<std::string>();
       if (status == "fail") row_.outside.push_back(text);
       if (status == "warn") row_.warned.push_back(text);
     }
@@ -61,7 +63,8 @@ class ReportReader {
         if (metrics[m].per_label) figures[m] = figure_of_label(l, metrics[m].id);
       CohortLabel& known = labels_[label];
       if (known.name.empty()) known.name = l.at("name");
-      if (!known.own_colour && l.at("colour").is_array()) known.own_colour = l.at("colour").get<std::array<std::uint8_t, 3>>();
+      if (!known.own_colour && l.at("colour").is_array())
+        known.own_colour = l.at("colour").get<std::array<std::uint8_t, 3>>();
     }
   }
 
@@ -93,9 +96,11 @@ std::string mesh_of(const std::string& folder, const std::vector<std::string>& f
   return "";
 }
 
-void read_done(const CohortFolder& folder, const CohortPlan& plan, const CohortCase& c, CohortRow& row, std::map<int, CohortLabel>& labels) {
+void read_done(const CohortFolder& folder, const CohortPlan& plan, const CohortCase& c, CohortRow& row,
+               std::map<int, CohortLabel>& labels) {
   row.state = CohortRow::State::done;
-  if (row.record.options != words_of(c.options) || row.record.version != plan.version || row.record.command != plan.command) {
+  if (row.record.options != words_of(c.options) || row.record.version != plan.version ||
+      row.record.command != plan.command) {
     row.state = CohortRow::State::changed;
     row.reason = "made with other options or another version than the manifest now says; run the batch again";
     return;
@@ -112,7 +117,8 @@ void read_done(const CohortFolder& folder, const CohortPlan& plan, const CohortC
   row.mesh = mesh_of(folder.case_folder(row.id), plan.formats);
 }
 
-CohortRow read_row(const CohortFolder& folder, const CohortPlan& plan, const CohortCase& c, std::map<int, CohortLabel>& labels) {
+CohortRow read_row(const CohortFolder& folder, const CohortPlan& plan, const CohortCase& c,
+                   std::map<int, CohortLabel>& labels) {
   CohortRow row;
   row.id = c.id;
   if (const auto failed = folder.record(c.id, true)) {
@@ -162,8 +168,10 @@ void compare(Cohort& cohort) {
     const Metric& metric = metrics[d.metric];
     for (std::size_t i = 0; i < d.values.size(); ++i) {
       if (d.scores[i] <= kOutlierScore) continue;
-      std::string text = (metric.per_label ? label_text(d.label, cohort.labels[d.label]) + ": " : std::string()) + lower_case(metric.title.substr(0, 1)) +
-                         metric.title.substr(1) + " " + figure_text(d.values[i]) + (metric.unit.empty() ? "" : " " + metric.unit) + ", median " + figure_text(d.median);
+      std::string text = (metric.per_label ? label_text(d.label, cohort.labels[d.label]) + ": " : std::string()) +
+                         lower_case(metric.title.substr(0, 1)) + metric.title.substr(1) + " " +
+                         figure_text(d.values[i]) + (metric.unit.empty() ? "" : " " + metric.unit) + ", median " +
+                         figure_text(d.median);
       texts[d.cases[i]].emplace_back(d.scores[i], std::move(text));
     }
     cohort.distributions.push_back(std::move(d));
@@ -189,8 +197,11 @@ void find_absent_labels(Cohort& cohort) {
   if (done < kFewestValues) return;
   for (CohortRow& row : cohort.rows)
     for (const auto& [label, n] : count)
-      if (!row.labels.empty() && row.labels.count(label) == 0 && static_cast<double>(n) >= kNearlyAll * static_cast<double>(done)) {
-        row.remarkable.insert(row.remarkable.begin(), label_text(label, cohort.labels[label]) + " is missing, " + std::to_string(n) + " of " + std::to_string(done) + " cases have it");
+      if (!row.labels.empty() && row.labels.count(label) == 0 &&
+          static_cast<double>(n) >= kNearlyAll * static_cast<double>(done)) {
+        row.remarkable.insert(row.remarkable.begin(), label_text(label, cohort.labels[label]) + " is missing, " +
+                                                          std::to_string(n) + " of " + std::to_string(done) +
+                                                          " cases have it");
         row.score = std::max(row.score, kScore);
       }
 }
@@ -256,21 +267,25 @@ void draw_missing(const CohortFolder& folder, Cohort& cohort, int threads) {
     }
   });
   for (const auto& entry : fs::directory_iterator(pictures, error))
-    if (ends_with(entry.path().string(), ".png") && wanted.count(entry.path().filename().string()) == 0) fs::remove(entry.path(), error);
+    if (ends_with(entry.path().string(), ".png") && wanted.count(entry.path().filename().string()) == 0)
+      fs::remove(entry.path(), error);
 }
 
 }  // namespace
 
 std::size_t Cohort::count(CohortRow::State state) const {
-  return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const CohortRow& r) { return r.state == state; }));
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [&](const CohortRow& r) { return r.state == state; }));
 }
 
 std::size_t Cohort::outside() const {
-  return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const CohortRow& r) { return r.is_outside(); }));
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [](const CohortRow& r) { return r.is_outside(); }));
 }
 
 std::size_t Cohort::outliers() const {
-  return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const CohortRow& r) { return r.is_outlier(); }));
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [](const CohortRow& r) { return r.is_outlier(); }));
 }
 
 int Cohort::exit_code() const {
@@ -280,17 +295,23 @@ int Cohort::exit_code() const {
 
 const char* to_text(CohortRow::State state) {
   switch (state) {
-    case CohortRow::State::done: return "done";
-    case CohortRow::State::failed: return "failed";
-    case CohortRow::State::changed: return "changed";
-    case CohortRow::State::missing: return "missing";
+    case CohortRow::State::done:
+      return "done";
+    case CohortRow::State::failed:
+      return "failed";
+    case CohortRow::State::changed:
+      return "changed";
+    case CohortRow::State::missing:
+      return "missing";
   }
   return "";
 }
 
 Cohort read_cohort(const CohortFolder& folder) {
   const std::optional<CohortPlan> plan = folder.plan();
-  if (!plan) fail_input("the folder holds no cohort: there is no .cohort/plan.json", folder.path(), "name the folder that stackmesh batch wrote with -o");
+  if (!plan)
+    fail_input("the folder holds no cohort: there is no .cohort/plan.json", folder.path(),
+               "name the folder that stackmesh batch wrote with -o");
   Cohort cohort;
   cohort.source = plan->source;
   cohort.version = plan->version;
@@ -307,7 +328,9 @@ Cohort collect(const CohortFolder& folder, const CollectOptions& options) {
   Cohort cohort = read_cohort(folder);
   if (options.pictures) draw_missing(folder, cohort, options.threads);
   AtomicFiles files;
-  const std::pair<const char*, std::string> written[] = {{"/cohort.csv", cohort_csv(cohort)}, {"/cohort.json", cohort_json(cohort)}, {"/cohort.html", cohort_html(cohort)}};
+  const std::pair<const char*, std::string> written[] = {{"/cohort.csv", cohort_csv(cohort)},
+                                                         {"/cohort.json", cohort_json(cohort)},
+                                                         {"/cohort.html", cohort_html(cohort)}};
   for (const auto& [name, text] : written)
     files.write(folder.path() + name, [&bytes = text](std::FILE* f) { std::fwrite(bytes.data(), 1, bytes.size(), f); });
   files.commit();

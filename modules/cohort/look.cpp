@@ -73,7 +73,8 @@ InputOptions input_options(const CohortCase& c) {
   o.allow_outside = has(c, "allow-outside");
   if (!value_of(c, "spacing").empty()) {
     std::array<double, 3> mm{};
-    if (std::sscanf(value_of(c, "spacing").back().c_str(), "%lf,%lf,%lf", &mm[0], &mm[1], &mm[2]) == 3) o.spacing_mm = mm;
+    if (std::sscanf(value_of(c, "spacing").back().c_str(), "%lf,%lf,%lf", &mm[0], &mm[1], &mm[2]) == 3)
+      o.spacing_mm = mm;
   }
   return o;
 }
@@ -83,7 +84,8 @@ void measure(const LabelVolume& v, CaseLook& look) {
   look.voxels = v.voxels.size();
   look.labels = v.labels.empty() ? 0 : v.labels.size() - 1;
   look.pixel_mm = std::sqrt(v.voxel_volume_mm3() / *std::max_element(v.spacing_mm.begin(), v.spacing_mm.end()));
-  const double face_mm2[3] = {v.spacing_mm[1] * v.spacing_mm[2], v.spacing_mm[0] * v.spacing_mm[2], v.spacing_mm[0] * v.spacing_mm[1]};
+  const double face_mm2[3] = {v.spacing_mm[1] * v.spacing_mm[2], v.spacing_mm[0] * v.spacing_mm[2],
+                              v.spacing_mm[0] * v.spacing_mm[1]};
   const std::size_t step[3] = {1, static_cast<std::size_t>(v.size[0]), static_cast<std::size_t>(v.size[0]) * v.size[1]};
   std::size_t labelled = 0, faces[3] = {0, 0, 0};  // a face between two labels counts for either
   for (int k = 0; k < v.size[2]; ++k)
@@ -150,7 +152,8 @@ std::string key_of_case(const CohortCase& c, const CaseCommand& command, const s
   std::error_code ignored;
   for (const std::string& input : c.inputs) {  // LABEL=FILE
     const std::size_t equal = input.find('=');
-    if (equal != std::string::npos && !std::filesystem::exists(input, ignored)) sum.add("label " + input.substr(0, equal) + "\n");
+    if (equal != std::string::npos && !std::filesystem::exists(input, ignored))
+      sum.add("label " + input.substr(0, equal) + "\n");
   }
   return sum.hex();
 }
@@ -192,8 +195,16 @@ void foretell(CaseLook& look, const CohortCase& c) {
 }
 
 std::string to_json(const CaseLook& l) {
-  return Json{{"key", l.key}, {"input_sha256", l.input_sha256}, {"fault", l.fault}, {"voxels", l.voxels}, {"labels", l.labels}, {"volume_mm3", l.volume_mm3},
-              {"area_mm2", l.area_mm2}, {"pixel_mm", l.pixel_mm}, {"memory_mb", l.memory_mb}, {"time_s", l.time_s}}
+  return Json{{"key", l.key},
+              {"input_sha256", l.input_sha256},
+              {"fault", l.fault},
+              {"voxels", l.voxels},
+              {"labels", l.labels},
+              {"volume_mm3", l.volume_mm3},
+              {"area_mm2", l.area_mm2},
+              {"pixel_mm", l.pixel_mm},
+              {"memory_mb", l.memory_mb},
+              {"time_s", l.time_s}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -33,7 +33,9 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-bool is_glob(const std::string& path) { return path.find_first_of("*?[") != std::string::npos; }
+bool is_glob(const std::string& path) {
+  return path.find_first_of("*?[") != std::string::npos;
+}
 
 std::vector<std::string> glob_files(const std::string& pattern) {
   std::vector<std::string> found;
@@ -55,7 +57,8 @@ std::string relative_to(const fs::path& folder, const std::string& path) {
 std::string input_path(const fs::path& folder, const std::string& cell) {
   const std::size_t equal = cell.find('=');
   std::error_code ignored;
-  if (equal == std::string::npos || cell.find('/') < equal || fs::exists(relative_to(folder, cell), ignored)) return relative_to(folder, cell);
+  if (equal == std::string::npos || cell.find('/') < equal || fs::exists(relative_to(folder, cell), ignored))
+    return relative_to(folder, cell);
   return cell.substr(0, equal + 1) + relative_to(folder, cell.substr(equal + 1));
 }
 
@@ -86,7 +89,8 @@ class CallCheck {
       command_.check(words);
     } catch (const Error& e) {
       if (where.empty()) throw;
-      fail_input("case '" + c.id + "' has an option that " + command_.name + " does not take", where, std::string(e.what()));
+      fail_input("case '" + c.id + "' has an option that " + command_.name + " does not take", where,
+                 std::string(e.what()));
     }
   }
 
@@ -99,7 +103,12 @@ class CallCheck {
 class ManifestReader {
  public:
   ManifestReader(const std::string& path, const CaseCommand& command, const std::vector<OptionValue>& of_all)
-      : path_(path), folder_(fs::path(path).parent_path()), command_(command), of_all_(of_all), check_(command), table_(read_table(path)) {}
+      : path_(path),
+        folder_(fs::path(path).parent_path()),
+        command_(command),
+        of_all_(of_all),
+        check_(command),
+        table_(read_table(path)) {}
 
   std::vector<CohortCase> read() {
     look_at_columns();
@@ -110,7 +119,10 @@ class ManifestReader {
       const std::string where = path_ + ", line " + std::to_string(row.line);
       CohortCase c = case_of(row, where);
       const auto [at, is_new] = line_of.emplace(c.id, row.line);
-      if (!is_new) fail_input("the id '" + c.id + "' stands twice", path_ + ", lines " + std::to_string(at->second) + " and " + std::to_string(row.line), "give each case an id of its own");
+      if (!is_new)
+        fail_input("the id '" + c.id + "' stands twice",
+                   path_ + ", lines " + std::to_string(at->second) + " and " + std::to_string(row.line),
+                   "give each case an id of its own");
       check_(c, where);
       cases.push_back(std::move(c));
     }
@@ -123,19 +135,24 @@ class ManifestReader {
     for (const KnownOption& o : command_.options) names.push_back(o.name);
     std::set<std::string> seen;
     for (const std::string& column : table_.columns) {
-      if (!seen.insert(column).second) fail_input("the column '" + column + "' stands twice", path_ + ", line 1", "keep one of them");
+      if (!seen.insert(column).second)
+        fail_input("the column '" + column + "' stands twice", path_ + ", line 1", "keep one of them");
       if (std::find(names.begin(), names.end(), column) == names.end()) {
         const std::string nearest = nearest_names(column, names, 3);
         fail_input("unknown column '" + column + "'", path_ + ", line 1",
-                   "columns are id, input and the long options of " + command_.name + (nearest.empty() ? "" : "; like it are " + nearest));
+                   "columns are id, input and the long options of " + command_.name +
+                       (nearest.empty() ? "" : "; like it are " + nearest));
       }
     }
     for (const char* needed : {"id", "input"})
-      if (seen.count(needed) == 0) fail_input(std::string("there is no column '") + needed + "'", path_ + ", line 1", "the head line needs id and input");
+      if (seen.count(needed) == 0)
+        fail_input(std::string("there is no column '") + needed + "'", path_ + ", line 1",
+                   "the head line needs id and input");
   }
 
   const KnownOption& option(const std::string& name) const {
-    return *std::find_if(command_.options.begin(), command_.options.end(), [&](const KnownOption& o) { return o.name == name; });
+    return *std::find_if(command_.options.begin(), command_.options.end(),
+                         [&](const KnownOption& o) { return o.name == name; });
   }
 
   CohortCase case_of(const Table::Row& row, const std::string& where) const {
@@ -149,11 +166,15 @@ class ManifestReader {
       else if (!cell.empty()) own_option(option(column), cell, where, own, off);
     }
     const std::string fault = fault_of_id(c.id);
-    if (!fault.empty()) fail_input("the id '" + c.id + "' " + fault, where, "it names the case's folder: give it letters, digits, '-' and '_'");
+    if (!fault.empty())
+      fail_input("the id '" + c.id + "' " + fault, where,
+                 "it names the case's folder: give it letters, digits, '-' and '_'");
     if (c.inputs.empty()) fail_input("case '" + c.id + "' has no input", where, "name its file");
     for (std::string& input : c.inputs) {
       input = input_path(folder_, input);
-      if (!is_there(input)) fail_input("the input of case '" + c.id + "' is not there: '" + input + "'", where, "check the name; paths are relative to the manifest's folder");
+      if (!is_there(input))
+        fail_input("the input of case '" + c.id + "' is not there: '" + input + "'", where,
+                   "check the name; paths are relative to the manifest's folder");
     }
     std::vector<OptionValue> others;
     for (const OptionValue& o : of_all_)
@@ -162,13 +183,16 @@ class ManifestReader {
     return c;
   }
 
-  void own_option(const KnownOption& known, const std::string& cell, const std::string& where, std::vector<OptionValue>& own,
-                  std::set<std::string>& off) const {
+  void own_option(const KnownOption& known, const std::string& cell, const std::string& where,
+                  std::vector<OptionValue>& own, std::set<std::string>& off) const {
     OptionValue value{known.name, {}};
     if (known.is_flag) {
       const std::string word = lower_case(cell);
-      const bool yes = word == "yes" || word == "true" || word == "on" || word == "1", no = word == "no" || word == "false" || word == "off" || word == "0";
-      if (!yes && !no) fail_input("'" + cell + "' in column '" + known.name + "' is neither yes nor no", where, "write yes, no or nothing");
+      const bool yes = word == "yes" || word == "true" || word == "on" || word == "1",
+                 no = word == "no" || word == "false" || word == "off" || word == "0";
+      if (!yes && !no)
+        fail_input("'" + cell + "' in column '" + known.name + "' is neither yes nor no", where,
+                   "write yes, no or nothing");
       if (yes) own.push_back(value);
       else off.insert(known.name);
       return;
@@ -178,7 +202,9 @@ class ManifestReader {
       for (std::string& path : value.values) {
         path = relative_to(folder_, path);
         std::error_code ignored;
-        if (!fs::exists(path, ignored)) fail_input("the file of column '" + known.name + "' is not there: '" + path + "'", where, "check the name; paths are relative to the manifest's folder");
+        if (!fs::exists(path, ignored))
+          fail_input("the file of column '" + known.name + "' is not there: '" + path + "'", where,
+                     "check the name; paths are relative to the manifest's folder");
       }
     }
     own.push_back(value);
@@ -193,7 +219,8 @@ class ManifestReader {
 };
 
 /// Cases of files, whose ids follow from their names.
-std::vector<CohortCase> cases_of_files(const std::vector<std::string>& files, const std::string& folder, const std::string& ending, const CaseCommand& command,
+std::vector<CohortCase> cases_of_files(const std::vector<std::string>& files, const std::string& folder,
+                                       const std::string& ending, const CaseCommand& command,
                                        const std::vector<OptionValue>& of_all) {
   std::map<std::string, int> count;
   const auto short_id = [&](const std::string& file) {
@@ -214,9 +241,13 @@ std::vector<CohortCase> cases_of_files(const std::vector<std::string>& files, co
       std::replace(c.id.begin(), c.id.end(), '/', '_');
     }
     const std::string fault = fault_of_id(c.id);
-    if (!fault.empty()) fail_input("the name of a file makes no id: '" + c.id + "' " + fault, file, "rename it, or write a manifest with ids");
+    if (!fault.empty())
+      fail_input("the name of a file makes no id: '" + c.id + "' " + fault, file,
+                 "rename it, or write a manifest with ids");
     const auto [at, is_new] = file_of.emplace(c.id, file);
-    if (!is_new) fail_input("two files make the id '" + c.id + "'", at->second + " and " + file, "rename one, or write a manifest with ids");
+    if (!is_new)
+      fail_input("two files make the id '" + c.id + "'", at->second + " and " + file,
+                 "rename one, or write a manifest with ids");
     c.inputs = {file[0] == '-' ? "./" + file : file};
     c.options = merged(of_all, {});
     check(c, "");
@@ -227,11 +258,13 @@ std::vector<CohortCase> cases_of_files(const std::vector<std::string>& files, co
 
 }  // namespace
 
-std::vector<CohortCase> read_manifest(const std::string& path, const CaseCommand& command, const std::vector<OptionValue>& of_all) {
+std::vector<CohortCase> read_manifest(const std::string& path, const CaseCommand& command,
+                                      const std::vector<OptionValue>& of_all) {
   return ManifestReader(path, command, of_all).read();
 }
 
-std::vector<CohortCase> read_bids_tree(const std::string& folder, const CaseCommand& command, const std::vector<OptionValue>& of_all) {
+std::vector<CohortCase> read_bids_tree(const std::string& folder, const CaseCommand& command,
+                                       const std::vector<OptionValue>& of_all) {
   std::vector<std::string> files;
   for (const char* levels : {"sub-*/*/*_dseg.*", "sub-*/ses-*/*/*_dseg.*"})
     for (const std::string& file : glob_files((fs::path(folder) / levels).string())) {
@@ -242,13 +275,17 @@ std::vector<CohortCase> read_bids_tree(const std::string& folder, const CaseComm
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   if (files.empty())
-    fail_input("the folder holds no label maps in the layout of BIDS derivatives", folder, "it needs sub-*/[ses-*/]KIND/*_dseg.nii.gz; name other files with --inputs 'GLOB'");
+    fail_input("the folder holds no label maps in the layout of BIDS derivatives", folder,
+               "it needs sub-*/[ses-*/]KIND/*_dseg.nii.gz; name other files with --inputs 'GLOB'");
   return cases_of_files(files, folder, "_dseg", command, of_all);
 }
 
-std::vector<CohortCase> read_glob(const std::string& pattern, const std::string& folder, const CaseCommand& command, const std::vector<OptionValue>& of_all) {
+std::vector<CohortCase> read_glob(const std::string& pattern, const std::string& folder, const CaseCommand& command,
+                                  const std::vector<OptionValue>& of_all) {
   const std::vector<std::string> files = glob_files(relative_to(folder, pattern));
-  if (files.empty()) fail_input("the pattern names no file", "--inputs '" + pattern + "'", "quote it, and check where it begins" + (folder.empty() ? std::string() : ": in " + folder));
+  if (files.empty())
+    fail_input("the pattern names no file", "--inputs '" + pattern + "'",
+               "quote it, and check where it begins" + (folder.empty() ? std::string() : ": in " + folder));
   return cases_of_files(files, folder, "_dseg", command, of_all);
 }
 
@@ -261,7 +298,8 @@ std::vector<CohortCase> selected_cases(const std::vector<CohortCase>& cases, con
     if (!found) {
       std::vector<std::string> ids;
       for (const CohortCase& c : cases) ids.push_back(c.id);
-      fail_usage("no case is called '" + word + "'", "--only", "name ids, globs of them or failed; like it are " + nearest_names(word, ids, 3));
+      fail_usage("no case is called '" + word + "'", "--only",
+                 "name ids, globs of them or failed; like it are " + nearest_names(word, ids, 3));
     }
   }
   std::vector<CohortCase> kept;

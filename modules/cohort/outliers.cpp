@@ -53,7 +53,8 @@ void judge_distribution(Distribution& d) {
   d.high = *(std::upper_bound(ascending.begin(), ascending.end(), ratios ? d.q3 * std::exp(reach) : d.q3 + reach) - 1);
   if (d.values.size() < kFewestValues) return;
 
-  constexpr double kNormal = 1.4826;  // the median absolute deviation of a normal distribution to its standard deviation
+  // the median absolute deviation of a normal distribution to its standard deviation
+  constexpr double kNormal = 1.4826;
   std::vector<double> scaled;
   for (const double v : d.values)
     if (!metric.logarithmic) scaled.push_back(v);

@@ -11,10 +11,10 @@ enum class Side { both, low, high };
 /// A figure that is compared over a cohort.
 struct Metric {
   std::string id, title, unit;
-  bool per_label = false;     ///< one value for each label, else one for the case
-  bool logarithmic = false;   ///< ratios count, not differences
+  bool per_label = false;    ///< one value for each label, else one for the case
+  bool logarithmic = false;  ///< ratios count, not differences
   Side side = Side::both;
-  double least_spread = 0;    ///< smallest spread that is believed: in the figure's unit, or the logarithm's
+  double least_spread = 0;  ///< smallest spread that is believed: in the figure's unit, or the logarithm's
 };
 
 /// Every figure, in the order in which tables and charts show them.
@@ -22,12 +22,13 @@ const std::vector<Metric>& cohort_metrics();
 
 /// A figure over the cases that have it.
 struct Distribution {
-  std::size_t metric = 0;      ///< in cohort_metrics()
-  int label = 0;               ///< 0: of the case
+  std::size_t metric = 0;          ///< in cohort_metrics()
+  int label = 0;                   ///< 0: of the case
   std::vector<std::size_t> cases;  ///< beside `values`
   std::vector<double> values;
   std::vector<double> scores;  ///< robust z, of the remarkable side only; 0 where there are too few values
-  double low = 0, q1 = 0, median = 0, q3 = 0, high = 0;  ///< low, high: furthest values within 1.5 interquartile ranges of the box (of logarithms where these count)
+  /// low, high: furthest values within 1.5 interquartile ranges of the box (of logarithms where these count)
+  double low = 0, q1 = 0, median = 0, q3 = 0, high = 0;
 };
 
 /// A score above it marks an outlier (Iglewicz and Hoaglin 1993).
@@ -35,8 +36,9 @@ constexpr double kOutlierScore = 3.5;
 /// Fewer values have no outliers.
 constexpr std::size_t kFewestValues = 6;
 
-/// Fills in scores and box: the score is the distance from the median over 1.4826 times the median absolute deviation, of logarithms
-/// where the metric says so. Values must be finite; those of a logarithmic metric that are not above 0 have no score.
+/// Fills in scores and box: the score is the distance from the median over 1.4826 times the median absolute deviation,
+/// of logarithms where the metric says so. Values must be finite; those of a logarithmic metric that are not above 0
+/// have no score.
 void judge_distribution(Distribution& d);
 
 }  // namespace stackmesh

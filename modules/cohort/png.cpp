@@ -31,7 +31,8 @@ std::string png_of(const std::vector<std::uint8_t>& rgb, int width, int height) 
     for (std::size_t i = 0; i < row_bytes; ++i) rows.push_back(static_cast<char>(row[i] - (i < 3 ? 0 : row[i - 3])));
   }
   return std::string("\x89PNG\r\n\x1a\n") +
-         chunk("IHDR", big_endian(static_cast<std::uint32_t>(width)) + big_endian(static_cast<std::uint32_t>(height)) + std::string(head, sizeof head)) +
+         chunk("IHDR", big_endian(static_cast<std::uint32_t>(width)) + big_endian(static_cast<std::uint32_t>(height)) +
+                           std::string(head, sizeof head)) +
          chunk("IDAT", deflated(rows)) + chunk("IEND", "");
 }
 

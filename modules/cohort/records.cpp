@@ -9,7 +9,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Paths need not be UTF-8: what is not is replaced, in records only.
-std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string text_of(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace
 
@@ -87,7 +89,8 @@ CohortPlan cohort_plan_of(const std::string& json) {
     CohortCase one;
     one.id = c.at("id");
     one.inputs = c.at("inputs").get<std::vector<std::string>>();
-    for (const Json& o : c.at("options")) one.options.push_back({o.at("name"), o.at("values").get<std::vector<std::string>>()});
+    for (const Json& o : c.at("options"))
+      one.options.push_back({o.at("name"), o.at("values").get<std::vector<std::string>>()});
     plan.cases.push_back(one);
   }
   return plan;

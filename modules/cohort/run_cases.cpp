@@ -53,7 +53,8 @@ std::string reason_of(const std::string& log, const ChildEnd& end) {
   }
   if (end.code < 0) {
     const std::string name = ::strsignal(-end.code);
-    return "killed by signal " + std::to_string(-end.code) + " (" + name + ")" + (end.code == -SIGKILL ? ", most likely for want of memory" : "");
+    return "killed by signal " + std::to_string(-end.code) + " (" + name + ")" +
+           (end.code == -SIGKILL ? ", most likely for want of memory" : "");
   }
   return "ended with exit code " + std::to_string(end.code) + " and no word";
 }
@@ -80,9 +81,14 @@ struct Job {
 
 class Pool {
  public:
-  Pool(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder, const RunCasesOptions& options,
-       const std::function<void(const CaseEvent&)>& tell)
-      : cases_(cases), command_(command), folder_(folder), o_(options), tell_(tell), jobs_(options.jobs > 0 ? options.jobs : usable_cores()),
+  Pool(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder,
+       const RunCasesOptions& options, const std::function<void(const CaseEvent&)>& tell)
+      : cases_(cases),
+        command_(command),
+        folder_(folder),
+        o_(options),
+        tell_(tell),
+        jobs_(options.jobs > 0 ? options.jobs : usable_cores()),
         look_timeout_s_(std::min(options.look_timeout_s, options.timeout_s.value_or(options.look_timeout_s))),
         budget_mb_(static_cast<double>(options.memory_bytes > 0 ? options.memory_bytes : free_memory()) / (1 << 20)) {}
 
@@ -179,7 +185,9 @@ class Pool {
     job.timed_out = false;
     job.asked_at_s = 0;
     folder_.note("started", job.c->id, job.look.key);
-    job.process = Child::start(words_of_case(*job.c, command_, o_.program, job.work, std::max(1, usable_cores() / jobs_), bound), job.work + "/log.txt");
+    job.process =
+        Child::start(words_of_case(*job.c, command_, o_.program, job.work, std::max(1, usable_cores() / jobs_), bound),
+                     job.work + "/log.txt");
     CaseRecord record;
     record.id = job.c->id;
     tell_({CaseEvent::Kind::started, record, ended_, cases_.size()});
@@ -205,7 +213,8 @@ class Pool {
           job = running_.erase(job);
           continue;
         }
-      } else if (o_.timeout_s && job->process.age_s() >= *o_.timeout_s && (!job->timed_out || job->process.age_s() >= job->asked_at_s + kGraceS)) {
+      } else if (o_.timeout_s && job->process.age_s() >= *o_.timeout_s &&
+                 (!job->timed_out || job->process.age_s() >= job->asked_at_s + kGraceS)) {
         if (!job->timed_out) job->asked_at_s = job->process.age_s();
         job->timed_out = true;
         job->process.stop();
@@ -229,7 +238,8 @@ class Pool {
       return true;
     }
     const std::string final_path = r.is_done ? folder_.case_folder(r.id) : folder_.failed_folder(r.id);
-    for (const char* file : {"/log.txt", "/report.json", "/report.html"}) name_final_folder(job.work + file, job.work, final_path);
+    for (const char* file : {"/log.txt", "/report.json", "/report.html"})
+      name_final_folder(job.work + file, job.work, final_path);
     folder_.finish(job.work, r);
     folder_.note(r.is_done ? "done" : "failed", r.id, r.key);
     settle(r.is_done ? CaseEvent::Kind::done : CaseEvent::Kind::failed, r, r.is_done ? result_.done : result_.failed);
@@ -256,7 +266,9 @@ class Pool {
     r.finished_utc = utc_now();
     r.is_done = end.code == 0;
     if (!r.is_done) r.reason = reason_of(job.work + "/log.txt", end);
-    if (job.timed_out) r.reason = "took longer than the " + seconds_text(*o_.timeout_s) + " s of --timeout; give it more, or mesh it coarser";
+    if (job.timed_out)
+      r.reason =
+          "took longer than the " + seconds_text(*o_.timeout_s) + " s of --timeout; give it more, or mesh it coarser";
     std::error_code ignored;
     for (const std::string& format : command_.formats)
       if (r.is_done && !fs::exists(job.work + "/mesh." + format, ignored)) {
@@ -276,7 +288,9 @@ class Pool {
   RunCasesResult stop(int signal) {
     for (Job& job : running_) job.process.stop();
     const auto begun = std::chrono::steady_clock::now();
-    const auto any_left = [&] { return std::any_of(running_.begin(), running_.end(), [](const Job& j) { return j.process.is_running(); }); };
+    const auto any_left = [&] {
+      return std::any_of(running_.begin(), running_.end(), [](const Job& j) { return j.process.is_running(); });
+    };
     ChildEnd end;
     while (any_left() && std::chrono::steady_clock::now() - begun < std::chrono::duration<double>(kGraceS)) {
       for (Job& job : running_) job.process.has_ended(end);
@@ -324,27 +338,30 @@ std::uint64_t free_memory() {
   return free_bytes > 0 ? std::min(free_bytes, memory_limit()) : memory_limit();
 }
 
-std::vector<std::string> words_of_case(const CohortCase& c, const CaseCommand& command, const std::string& program, const std::string& folder, int threads,
-                                       std::uint64_t memory_bytes) {
+std::vector<std::string> words_of_case(const CohortCase& c, const CaseCommand& command, const std::string& program,
+                                       const std::string& folder, int threads, std::uint64_t memory_bytes) {
   std::vector<std::string> words = {program, command.name};
   words.insert(words.end(), c.inputs.begin(), c.inputs.end());
   for (const std::string& format : command.formats) words.insert(words.end(), {"-o", folder + "/mesh." + format});
   for (const char* report : {"/report.json", "/report.html"}) words.insert(words.end(), {"--report", folder + report});
   const std::vector<std::string> options = words_of(c.options);
   words.insert(words.end(), options.begin(), options.end());
-  const auto has = [&](const std::string& name) { return std::any_of(c.options.begin(), c.options.end(), [&](const OptionValue& o) { return o.name == name; }); };
+  const auto has = [&](const std::string& name) {
+    return std::any_of(c.options.begin(), c.options.end(), [&](const OptionValue& o) { return o.name == name; });
+  };
   if (!has("threads")) words.push_back("--threads=" + std::to_string(threads));
   if (!has("max-memory") && memory_bytes > 0) words.push_back("--max-memory=" + std::to_string(memory_bytes));
   if (!has("progress")) words.push_back("--progress=none");
   return words;
 }
 
-RunCasesResult run_cases(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder, const RunCasesOptions& options,
-                         const std::function<void(const CaseEvent&)>& tell) {
+RunCasesResult run_cases(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder,
+                         const RunCasesOptions& options, const std::function<void(const CaseEvent&)>& tell) {
   return Pool(cases, command, folder, options, tell).run();
 }
 
-std::vector<CaseLook> look_at_cases(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder, int jobs, double timeout_s) {
+std::vector<CaseLook> look_at_cases(const std::vector<CohortCase>& cases, const CaseCommand& command,
+                                    const CohortFolder& folder, int jobs, double timeout_s) {
   std::vector<CaseLook> looks(cases.size());
   std::map<std::size_t, Child> running;
   const std::size_t most = static_cast<std::size_t>(jobs > 0 ? jobs : usable_cores());
@@ -352,9 +369,11 @@ std::vector<CaseLook> look_at_cases(const std::vector<CohortCase>& cases, const 
   for (std::size_t next = 0; next < cases.size() || !running.empty();) {
     for (; next < cases.size() && running.size() < most; ++next) {
       const std::optional<CaseRecord> known = folder.record(cases[next].id);
-      running[next] = Child::fork_for([&] { return to_json(look_at_case(cases[next], command, known ? known->key : "")); });
+      running[next] =
+          Child::fork_for([&] { return to_json(look_at_case(cases[next], command, known ? known->key : "")); });
     }
-    if (const int signal = signals.wait(1); signal != 0) throw Error(ErrorKind::no_result, "stopped by a signal", folder.path(), "run it again");
+    if (const int signal = signals.wait(1); signal != 0)
+      throw Error(ErrorKind::no_result, "stopped by a signal", folder.path(), "run it again");
     for (auto it = running.begin(); it != running.end();) {
       ChildEnd end;
       const bool ended = it->second.has_ended(end), late = !ended && it->second.age_s() > timeout_s;
@@ -366,7 +385,9 @@ std::vector<CaseLook> look_at_cases(const std::vector<CohortCase>& cases, const 
         looks[it->first] = case_look_of(ended ? it->second.text() : "");
       } catch (const std::exception&) {
         looks[it->first] = identify_case(cases[it->first], command);
-        looks[it->first].fault = late ? "the look took longer than " + std::to_string(static_cast<int>(timeout_s)) + " s" : "the look at the input came to nothing";
+        looks[it->first].fault = late
+                                     ? "the look took longer than " + std::to_string(static_cast<int>(timeout_s)) + " s"
+                                     : "the look at the input came to nothing";
       }
       it = running.erase(it);
     }

@@ -11,14 +11,16 @@
 namespace stackmesh {
 
 struct RunCasesOptions {
-  std::string program;                   ///< path of the program that makes a case
-  int jobs = 0;                          ///< cases at once; 0: as many as this process may use cores
-  std::uint64_t memory_bytes = 0;        ///< what all cases at once may be foretold to take; 0: what is free now
-  std::uint64_t case_memory_bytes = 0;   ///< bound of each case (its --max-memory); 0: memory_bytes
-  std::optional<double> timeout_s;       ///< of each case, wall time; unset: none
-  int retries = 0;                       ///< more tries of a case that fails other than by its call or input (exit 2 and 3)
-  bool failed_again = false;             ///< cases that failed before with the same key run again
-  double look_timeout_s = 120;           ///< a look that takes longer (or longer than timeout_s) is given up, and the case runs alone
+  std::string program;                  ///< path of the program that makes a case
+  int jobs = 0;                         ///< cases at once; 0: as many as this process may use cores
+  std::uint64_t memory_bytes = 0;       ///< what all cases at once may be foretold to take; 0: what is free now
+  std::uint64_t case_memory_bytes = 0;  ///< bound of each case (its --max-memory); 0: memory_bytes
+  std::optional<double> timeout_s;      ///< of each case, wall time; unset: none
+  /// more tries of a case that fails other than by its call or input (exit 2 and 3)
+  int retries = 0;
+  bool failed_again = false;  ///< cases that failed before with the same key run again
+  /// a look that takes longer (or longer than timeout_s) is given up, and the case runs alone
+  double look_timeout_s = 120;
 };
 
 /// What happened to a case.
@@ -41,20 +43,22 @@ struct RunCasesResult {
   int stopped_by = 0;  ///< the signal that asked to stop; what ran then is not run, and leaves nothing
 };
 
-/// Makes each case by a process of the program itself, in the order given, as many at once as `jobs` and memory allow: a case
-/// starts when the memory foretold for it and for those that run fits, or when it is alone. Each case is looked at before it starts, by
-/// a process of its own, beside those that run. A case that the kernel killed beside others is tried once more alone. Whatever ends
-/// this process ends the cases that run, and they leave hidden folders only.
+/// Makes each case by a process of the program itself, in the order given, as many at once as `jobs` and memory allow:
+/// a case starts when the memory foretold for it and for those that run fits, or when it is alone. Each case is looked
+/// at before it starts, by a process of its own, beside those that run. A case that the kernel killed beside others is
+/// tried once more alone. Whatever ends this process ends the cases that run, and they leave hidden folders only.
 /// Precondition: this process has one thread. @throws Error(output) where the folder cannot be written
 RunCasesResult run_cases(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder,
                          const RunCasesOptions& options, const std::function<void(const CaseEvent&)>& tell);
 
-/// The words that make a case: PROGRAM mesh INPUT... -o FOLDER/mesh.vtu --report FOLDER/report.json --report FOLDER/report.html OPTIONS.
-std::vector<std::string> words_of_case(const CohortCase& c, const CaseCommand& command, const std::string& program, const std::string& folder, int threads,
-                                       std::uint64_t memory_bytes);
+/// The words that make a case: PROGRAM mesh INPUT... -o FOLDER/mesh.vtu --report FOLDER/report.json --report
+/// FOLDER/report.html OPTIONS.
+std::vector<std::string> words_of_case(const CohortCase& c, const CaseCommand& command, const std::string& program,
+                                       const std::string& folder, int threads, std::uint64_t memory_bytes);
 
 /// Looks at every case, some at once; in the order given. For --dry-run and for size classes.
-std::vector<CaseLook> look_at_cases(const std::vector<CohortCase>& cases, const CaseCommand& command, const CohortFolder& folder, int jobs, double timeout_s);
+std::vector<CaseLook> look_at_cases(const std::vector<CohortCase>& cases, const CaseCommand& command,
+                                    const CohortFolder& folder, int jobs, double timeout_s);
 
 /// Cores that this process may use.
 int usable_cores();

@@ -20,7 +20,8 @@ std::string trimmed(const std::string& text) {
 /// Takes the file apart, cell by cell.
 class Reader {
  public:
-  Reader(const std::string& text, char separator, const std::string& path) : text_(text), separator_(separator), path_(path) {}
+  Reader(const std::string& text, char separator, const std::string& path)
+      : text_(text), separator_(separator), path_(path) {}
 
   /// The next line that is not empty; false at the end.
   bool next(Table::Row& row) {
@@ -68,7 +69,8 @@ class Reader {
         ++at_;
         while (at_ < text_.size() && (text_[at_] == '\r' || text_[at_] == ' ')) ++at_;
         if (at_ < text_.size() && text_[at_] != separator_ && text_[at_] != '\n')
-          fail_input("text behind a closing quote", path_ + ", line " + std::to_string(begun), "double the quotes that are part of a cell");
+          fail_input("text behind a closing quote", path_ + ", line " + std::to_string(begun),
+                     "double the quotes that are part of a cell");
         return found;
       }
     }
@@ -87,22 +89,28 @@ Table read_table(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   bytes << file.rdbuf();
-  if (!file) fail_input(std::string("the table cannot be read: ") + std::strerror(errno != 0 ? errno : EIO), path, "check the name and the rights");
+  if (!file)
+    fail_input(std::string("the table cannot be read: ") + std::strerror(errno != 0 ? errno : EIO), path,
+               "check the name and the rights");
   std::string text = bytes.str();
   if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);
-  if (text.find('\0') != std::string::npos) fail_input("the table holds a NUL byte, it is no text", path, "save it as CSV or TSV in UTF-8");
+  if (text.find('\0') != std::string::npos)
+    fail_input("the table holds a NUL byte, it is no text", path, "save it as CSV or TSV in UTF-8");
   const std::string head = text.substr(0, text.find('\n'));
   const bool tabs = ends_with(lower_case(path), ".tsv") || head.find('\t') != std::string::npos;
 
   Reader reader(text, tabs ? '\t' : ',', path);
   Table table;
   Table::Row row;
-  if (!reader.next(row)) fail_input("the table is empty", path, "write a head line such as id,input and a line for each case");
+  if (!reader.next(row))
+    fail_input("the table is empty", path, "write a head line such as id,input and a line for each case");
   table.columns = row.cells;
   while (reader.next(row)) {
     if (row.cells.size() != table.columns.size())
-      fail_input("a row of " + std::to_string(row.cells.size()) + " cells under " + std::to_string(table.columns.size()) + " columns",
-                 path + ", line " + std::to_string(row.line), "give it a cell for each column, in quotes where it holds a separator");
+      fail_input("a row of " + std::to_string(row.cells.size()) + " cells under " +
+                     std::to_string(table.columns.size()) + " columns",
+                 path + ", line " + std::to_string(row.line),
+                 "give it a cell for each column, in quotes where it holds a separator");
     table.rows.push_back(row);
   }
   return table;

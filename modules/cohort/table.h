@@ -15,10 +15,11 @@ struct Table {
   std::vector<Row> rows;
 };
 
-/// Reads a table with a head line: tabs separate the cells when the name ends in .tsv or the head line holds a tab, else commas.
-/// Cells may be in double quotes (RFC 4180), which then may hold separators, line ends and doubled quotes. Empty lines are left out;
-/// a byte order mark and CR LF are accepted.
-/// @throws Error(input) for a file that cannot be read, has no head, a row of another length, an unclosed quote or a NUL byte
+/// Reads a table with a head line: tabs separate the cells when the name ends in .tsv or the head line holds a tab,
+/// else commas. Cells may be in double quotes (RFC 4180), which then may hold separators, line ends and doubled quotes.
+/// Empty lines are left out; a byte order mark and CR LF are accepted.
+/// @throws Error(input) for a file that cannot be read, has no head, a row of another length, an unclosed quote or a
+/// NUL byte
 Table read_table(const std::string& path);
 
 /// A cell of a CSV file, quoted where it has to be.

@@ -40,15 +40,19 @@ View default_view() {
 
 class Canvas {
  public:
-  Canvas() : depth_(kWidth * kFiner * kHeight * kFiner, -std::numeric_limits<float>::infinity()), colour_(depth_.size(), {1, 1, 1}) {}
+  Canvas()
+      : depth_(kWidth * kFiner * kHeight * kFiner, -std::numeric_limits<float>::infinity()),
+        colour_(depth_.size(), {1, 1, 1}) {}
 
   /// Corners in finer pixels, z towards the eye; brightness at each corner.
   void triangle(const std::array<Vec3, 3>& p, const std::array<double, 3>& light, const Colour& colour) {
     const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
     if (std::abs(area) < 1e-12) return;
     const auto range = [&](double Vec3::*axis, int most) {
-      const double low = std::min({p[0].*axis, p[1].*axis, p[2].*axis}), high = std::max({p[0].*axis, p[1].*axis, p[2].*axis});
-      return std::pair<int, int>{std::max(0, static_cast<int>(std::ceil(low - 0.5))), std::min(most - 1, static_cast<int>(std::floor(high - 0.5)))};
+      const double low = std::min({p[0].*axis, p[1].*axis, p[2].*axis}),
+                   high = std::max({p[0].*axis, p[1].*axis, p[2].*axis});
+      return std::pair<int, int>{std::max(0, static_cast<int>(std::ceil(low - 0.5))),
+                                 std::min(most - 1, static_cast<int>(std::floor(high - 0.5)))};
     };
     const auto [x0, x1] = range(&Vec3::x, kWidth * kFiner);
     const auto [y0, y1] = range(&Vec3::y, kHeight * kFiner);
@@ -74,7 +78,8 @@ class Canvas {
         for (int k = 0; k < 3; ++k) {
           double sum = 0;
           for (int v = 0; v < kFiner; ++v)
-            for (int u = 0; u < kFiner; ++u) sum += colour_[static_cast<std::size_t>(y * kFiner + v) * kWidth * kFiner + x * kFiner + u][k];
+            for (int u = 0; u < kFiner; ++u)
+              sum += colour_[static_cast<std::size_t>(y * kFiner + v) * kWidth * kFiner + x * kFiner + u][k];
           rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * sum / (kFiner * kFiner))));
         }
     return png_of(rgb, kWidth, kHeight);
@@ -120,11 +125,14 @@ std::string draw_thumbnail(const InterfaceComplex& surface, const std::map<int, 
   Canvas canvas;
   if (outer.empty()) return canvas.png();
   constexpr double kMargin = 0.92;
-  const double scale = kMargin * kFiner * std::min(kWidth / std::max(1e-9, high.x - low.x), kHeight / std::max(1e-9, high.y - low.y));
+  const double scale =
+      kMargin * kFiner * std::min(kWidth / std::max(1e-9, high.x - low.x), kHeight / std::max(1e-9, high.y - low.y));
   const Vec3 middle = 0.5 * (low + high);
   const auto brightness = [&](const Vec3& n) {
     const double length = norm(n);
-    return length > 0 ? 0.35 + 0.75 * std::max(0.0, dot(n, view.eye + 0.4 * view.up - 0.2 * view.right) / (1.1 * length)) : 0.6;
+    return length > 0
+               ? 0.35 + 0.75 * std::max(0.0, dot(n, view.eye + 0.4 * view.up - 0.2 * view.right) / (1.1 * length))
+               : 0.6;
   };
   std::map<int, Colour> colours;
   for (const auto& [label, known] : labels) colours[label] = colour_of(known.colour);

@@ -20,7 +20,8 @@ double& coordinate(Vec3& p, int axis) {
 /// Space halved again and again; leaves are the boxes.
 class SpaceTree {
  public:
-  SpaceTree(const ComplexMesh& mesh, std::size_t vertices_each, double cut) : mesh_(mesh), each_(vertices_each), cut_(cut) {
+  SpaceTree(const ComplexMesh& mesh, std::size_t vertices_each, double cut)
+      : mesh_(mesh), each_(vertices_each), cut_(cut) {
     std::vector<std::int32_t> all;
     for (std::int32_t v = 0; v < static_cast<std::int32_t>(mesh.points.size()); ++v)
       if (!mesh.star[v].empty()) all.push_back(v);
@@ -107,13 +108,13 @@ std::vector<MeshBlock> cut_into_blocks(const ComplexMesh& mesh, const std::vecto
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles.size()); ++t) {
     if (!mesh.alive(t)) continue;
     const auto& v = mesh.triangles[t].v;
-    const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]], m{margin_mm, margin_mm, margin_mm};
+    const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]],
+               m{margin_mm, margin_mm, margin_mm};
     const Vec3 low = Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})} - m;
     const Vec3 high = Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})} + m;
     met.clear();
     tree.meets(low, high, [&](std::int32_t leaf) { met.push_back(leaf); });
-    if (met.size() == 1)
-      inside[met[0]].push_back(t);
+    if (met.size() == 1) inside[met[0]].push_back(t);
     else
       for (std::int32_t leaf : met) halo[leaf].push_back(t);
   }
@@ -166,10 +167,8 @@ void join_blocks(ComplexMesh& mesh, std::vector<double>& size, std::vector<std::
       if (b.mesh.frozen[t]) continue;
       MeshTriangle m = b.mesh.triangles[t];
       for (std::int32_t& v : m.v) v = numbers[i][v];
-      if (t < b.triangles.size())
-        mesh.triangles[b.triangles[t]] = m;
-      else
-        mesh.triangles.push_back(m);
+      if (t < b.triangles.size()) mesh.triangles[b.triangles[t]] = m;
+      else mesh.triangles.push_back(m);
     }
   }
   mesh.compact(size, hints);

@@ -6,8 +6,8 @@
 
 namespace stackmesh {
 
-/// A part of a complex that can be changed on its own: all triangles that come near a box of space. Those that leave the
-/// box are frozen. What changes stays inside the box, so parts that are changed at the same time cannot meet.
+/// A part of a complex that can be changed on its own: all triangles that come near a box of space. Those that leave
+/// the box are frozen. What changes stays inside the box, so parts that are changed at the same time cannot meet.
 struct MeshBlock {
   ComplexMesh mesh;
   std::vector<std::int32_t> vertices, triangles;  ///< the numbers in the whole of those it began with
@@ -15,9 +15,9 @@ struct MeshBlock {
   std::vector<std::int32_t> hints;                ///< face of the reference for each vertex
 };
 
-/// Cuts space into boxes of about `vertices_each` vertices, halving at the quantile `cut` along the longest axis; frozen
-/// triangles reach within `margin_mm` of a box's sides. Other quantiles put the sides elsewhere. The result depends on
-/// the mesh alone.
+/// Cuts space into boxes of about `vertices_each` vertices, halving at the quantile `cut` along the longest axis;
+/// frozen triangles reach within `margin_mm` of a box's sides. Other quantiles put the sides elsewhere. The result
+/// depends on the mesh alone.
 std::vector<MeshBlock> cut_into_blocks(const ComplexMesh& mesh, const std::vector<double>& size,
                                        const std::vector<std::int32_t>& hints, std::size_t vertices_each, double cut,
                                        double margin_mm, int threads);

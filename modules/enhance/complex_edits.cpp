@@ -1,4 +1,5 @@
-// The local operations of a ComplexMesh: whether an edge may be collapsed or flipped, and the change of connectivity itself.
+// The local operations of a ComplexMesh: whether an edge may be collapsed or flipped, and the change of connectivity
+// itself.
 #include <algorithm>
 #include <utility>
 
@@ -264,7 +265,8 @@ std::vector<std::int32_t> ComplexMesh::disc_behind(const std::array<std::int32_t
   return disc;
 }
 
-void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc, std::vector<std::array<std::int32_t, 3>> filling) {
+void ComplexMesh::replace_disc(const std::vector<std::int32_t>& disc,
+                               std::vector<std::array<std::int32_t, 3>> filling) {
   // All of the filling runs one way round: a side that it shares with the disc tells which.
   const auto shared = [&](const std::array<std::int32_t, 3>& f, int k, bool back) {
     return std::any_of(disc.begin(), disc.end(), [&](std::int32_t t) {

@@ -10,7 +10,8 @@
 #include "enhance/triangle_corners.h"
 
 namespace stackmesh {
-ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads, bool inner_caps) : points(complex.points) {
+ComplexMesh::ComplexMesh(const InterfaceComplex& complex, double cap_area_mm2, int threads, bool inner_caps)
+    : points(complex.points) {
   std::map<std::pair<Label, Label>, std::int32_t> numbers;
   std::pair<Label, Label> last = {0, 0};  // neighbours in the list mostly have the same pair
   for (const InterfaceTriangle& t : complex.triangles) {
@@ -103,9 +104,8 @@ void ComplexMesh::find_curves(int threads) {
 }
 
 void ComplexMesh::find_pinned(int threads) {
-  for_each_index(points.size(), threads, [&](std::size_t v) {
-    pinned[v] = !star[v].empty() && is_pinched(static_cast<std::int32_t>(v));
-  });
+  for_each_index(points.size(), threads,
+                 [&](std::size_t v) { pinned[v] = !star[v].empty() && is_pinched(static_cast<std::int32_t>(v)); });
 }
 
 /// A free vertex has one closed fan; one on a curve has fans that all run from one curve edge to the other.
@@ -118,8 +118,7 @@ bool ComplexMesh::is_pinched(std::int32_t v) const {
   for (int f = 0; f < count; ++f)
     for (std::int32_t c : curve[v]) {
       int touching = 0;
-      for (std::size_t i = 0; i < fan.size(); ++i)
-        touching += fan[i] == f && holds(triangles[star[v][i]].v, c);
+      for (std::size_t i = 0; i < fan.size(); ++i) touching += fan[i] == f && holds(triangles[star[v][i]].v, c);
       if (touching != 1) return true;
     }
   return false;

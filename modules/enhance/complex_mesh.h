@@ -34,10 +34,11 @@ class ComplexMesh {
   std::vector<MeshTriangle> triangles;
   std::vector<ShortList> star;   ///< triangles of each vertex; empty: the vertex is gone
   std::vector<ShortList> curve;  ///< neighbours along curve edges
-  std::vector<char> pinned;                      ///< never moves, never removed
-  std::vector<char> flat;                        ///< on a flat cap: keeps its z
+  std::vector<char> pinned;      ///< never moves, never removed
+  std::vector<char> flat;        ///< on a flat cap: keeps its z
 
-  /// Of a part of a larger complex: triangles that may not change, and the box that vertices may not leave. Empty: none.
+  /// Of a part of a larger complex: triangles that may not change, and the box that vertices may not leave. Empty:
+  /// none.
   std::vector<char> frozen, held;  ///< held: vertices of a frozen triangle, which may not move or go
   Vec3 low{-1e300, -1e300, -1e300}, high{1e300, 1e300, 1e300};
   bool is_frozen(std::int32_t t) const { return !frozen.empty() && frozen[t]; }
@@ -48,7 +49,8 @@ class ComplexMesh {
   /// True for a vertex of a part that is gone or has a triangle which is not frozen.
   bool owned(std::int32_t v) const;
   /// The part with these triangles, those from `free` on frozen; `vertices` are the numbers of its vertices here.
-  ComplexMesh part(const std::vector<std::int32_t>& triangles, std::size_t free, std::vector<std::int32_t>& vertices) const;
+  ComplexMesh part(const std::vector<std::int32_t>& triangles, std::size_t free,
+                   std::vector<std::int32_t>& vertices) const;
   /// Numbers vertices and triangles anew without those that are gone, and finds the stars; what is held for each vertex
   /// follows.
   void compact(std::vector<double>& size, std::vector<std::int32_t>& hints);
@@ -80,8 +82,8 @@ class ComplexMesh {
   /// True when `gone` may be merged into `kept` without changing the topology of any sheet or curve
   /// (link condition; \cite dey1999).
   bool can_collapse(std::int32_t gone, std::int32_t kept) const;
-  /// The same for any two neighbours, fixed ones too, asked of the labels: the boundary of each (the outside's as well) is
-  /// plain at both, and what holds both holds their edge, and no other common neighbours than the edge's two apexes.
+  /// The same for any two neighbours, fixed ones too, asked of the labels: the boundary of each (the outside's as well)
+  /// is plain at both, and what holds both holds their edge, and no other common neighbours than the edge's two apexes.
   bool can_merge(std::int32_t gone, std::int32_t kept) const;
   /// Returns the numbers of the triangles that died; those of `gone` that stay now hold `kept`.
   std::vector<std::int32_t> collapse(std::int32_t gone, std::int32_t kept);
@@ -96,15 +98,16 @@ class ComplexMesh {
   /// Puts a vertex at p on the edge; returns it. Triangles that were added are the last ones.
   std::int32_t split(std::int32_t a, std::int32_t b, const Vec3& p);
 
-  /// Triangle t = (a b c) of a curve edge a b goes, its free corner c joins the curve: every other triangle of the edge is
-  /// split at c.
+  /// Triangle t = (a b c) of a curve edge a b goes, its free corner c joins the curve: every other triangle of the edge
+  /// is split at c.
   void absorb(std::int32_t a, std::int32_t b, std::int32_t t);
 
-  /// The triangles of one patch on the side of `start` of the loop of edges a b c: a disc with free vertices only within. Empty
-  /// where they are not one, or more than `most`.
-  std::vector<std::int32_t> disc_behind(const std::array<std::int32_t, 3>& loop, std::int32_t start, std::size_t most) const;
-  /// Puts triangles over the same loop of edges, no more than the disc has, in its place; they get the numbers of the disc's
-  /// first and its direction.
+  /// The triangles of one patch on the side of `start` of the loop of edges a b c: a disc with free vertices only
+  /// within. Empty where they are not one, or more than `most`.
+  std::vector<std::int32_t> disc_behind(const std::array<std::int32_t, 3>& loop, std::int32_t start,
+                                        std::size_t most) const;
+  /// Puts triangles over the same loop of edges, no more than the disc has, in its place; they get the numbers of the
+  /// disc's first and its direction.
   void replace_disc(const std::vector<std::int32_t>& disc, std::vector<std::array<std::int32_t, 3>> filling);
 
   /// Makes an edge a ridge (no-op if it is a curve edge already).

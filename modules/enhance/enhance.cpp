@@ -29,14 +29,17 @@ constexpr double kDeviationAim = 0.33;
 
 constexpr std::size_t kSamples = 20000;   // of the stitched surface, to tell its distance
 constexpr double kSmoothingCost = 0.031;  // pixels of mean distance for which the steps of single voxels go
-constexpr double kSheetGap = 0.2;         // of the edge length: what sheets keep apart in the end, where small moves allow it
-constexpr int kLowPasses = 3;             // of the low-pass on the remeshed surface, by default
-constexpr double kSettled = 0.01;         // pixels: vertices that near the faired surface stay where they are
+// of the edge length: what sheets keep apart in the end, where small moves allow it
+constexpr double kSheetGap = 0.2;
+constexpr int kLowPasses = 3;      // of the low-pass on the remeshed surface, by default
+constexpr double kSettled = 0.01;  // pixels: vertices that near the faired surface stay where they are
 constexpr double kDrawnCorner_deg = 35;
-constexpr double kMuchShorter = 0.7, kMuchOfIt = 0.1;  // shares of the length requested, and of the surface, from which on shorter edges are told
-constexpr double kDrawnBulges = 6, kDrawnDeviation_mm = 0.15;  // the default deviation of smooth drawn outlines: so many bulges, at least that
+// shares of the length requested, and of the surface, from which on shorter edges are told
+constexpr double kMuchShorter = 0.7, kMuchOfIt = 0.1;
+// the default deviation of smooth drawn outlines: so many bulges, at least that
+constexpr double kDrawnBulges = 6, kDrawnDeviation_mm = 0.15;
 constexpr double kLeastSmoothing = 1e-3;  // of the smoothing's limits, for outlines without any roughness
-constexpr int kSmoothPasses = 5;  // of HC-Laplacian smoothing at most; its limits are reached by then
+constexpr int kSmoothPasses = 5;          // of HC-Laplacian smoothing at most; its limits are reached by then
 
 std::string number(double x) {
   char text[32];
@@ -115,14 +118,15 @@ class Enhancement {
     positive(o_.gap_mm, "gap between sections");
     for (const auto& [label, x] : o_.label_edge_mm)
       positive(x, ("edge length of label " + std::to_string(label)).c_str());
-    if (!(o_.gradation > 1))
-      fail_usage("gradation must be above 1", number(o_.gradation), "1.3 is the default");
+    if (!(o_.gradation > 1)) fail_usage("gradation must be above 1", number(o_.gradation), "1.3 is the default");
     if (o_.edge_min_mm && o_.edge_max_mm && *o_.edge_min_mm > *o_.edge_max_mm)
       fail_usage("the smallest edge length is above the largest",
                  number(*o_.edge_min_mm) + " > " + number(*o_.edge_max_mm), "swap them");
   }
 
-  static std::string text(const ShellCount& c) { return std::to_string(c.outer) + " pieces and " + std::to_string(c.inward) + " holes"; }
+  static std::string text(const ShellCount& c) {
+    return std::to_string(c.outer) + " pieces and " + std::to_string(c.inward) + " holes";
+  }
 
   void warn(Warning w) { result_.warnings.push_back(std::move(w)); }
 
@@ -180,7 +184,8 @@ class Enhancement {
     return 1.5 * step;
   }
 
-  /// The nearest places on the faired interfaces of all vertices that may go there, and how much the interfaces bend there.
+  /// The nearest places on the faired interfaces of all vertices that may go there, and how much the interfaces bend
+  /// there.
   struct FairedPlaces {
     std::vector<Vec3> to;
     std::vector<double> bend;  ///< -1: not known
@@ -192,8 +197,11 @@ class Enhancement {
       const auto v = static_cast<std::int32_t>(n);
       if (mesh.star[v].empty() || mesh.is_fixed(v) || mesh.flat[v]) return;
       if (!mesh.curve[v].empty()) {
-        if (const auto foot = reference_->nearest_on_curve(out.to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), reach)) out.to[v] = *foot;
-      } else if (const auto foot = reference_->nearest(out.to[v], mesh.triangles[mesh.star[v][0]].patch, reach, -1, 0)) {
+        if (const auto foot =
+                reference_->nearest_on_curve(out.to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), reach))
+          out.to[v] = *foot;
+      } else if (const auto foot =
+                     reference_->nearest(out.to[v], mesh.triangles[mesh.star[v][0]].patch, reach, -1, 0)) {
         out.to[v] = foot->point;
         if (!reference_->is_faired(foot->face)) return;
         out.bend[v] = 0;
@@ -217,15 +225,15 @@ class Enhancement {
     result_.counts.held_back = r.held_back;
   }
 
-  /// How much smoothing the surface is in need of: 1 where it has steps of pixels, or outlines as rough as those, near 0 for outlines that
-  /// were drawn smoothly: there it would only move what was drawn.
+  /// How much smoothing the surface is in need of: 1 where it has steps of pixels, or outlines as rough as those, near
+  /// 0 for outlines that were drawn smoothly: there it would only move what was drawn.
   double roughness() const {
     const double share = std::min(1.0, kDrawnBulges * o_.drawn_bulge_mm / (0.5 * o_.pixel_mm));
     return o_.drawn_gap_mm > 0 ? std::max(kLeastSmoothing, share * share) : 1;
   }
 
-  /// Smooth outlines are followed more closely than a pixel asks for: triangles that hold the drawn volume stand off its surface
-  /// by two thirds of what their edges bulge.
+  /// Smooth outlines are followed more closely than a pixel asks for: triangles that hold the drawn volume stand off
+  /// its surface by two thirds of what their edges bulge.
   double usual_deviation_mm() const {
     if (o_.faired != nullptr) return 0.25 * o_.pixel_mm;
     const double half = 0.5 * o_.pixel_mm;
@@ -242,10 +250,13 @@ class Enhancement {
     s.gradation = o_.gradation;
     s.deviation_mm = kDeviationAim * o_.deviation_mm.value_or(usual_deviation_mm());
     if (o_.deviation_mm && *o_.deviation_mm < 0.25 * o_.pixel_mm)
-      warn({WarningCode::edge_length, "", "a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" +
-           number(o_.pixel_mm) + " mm): it follows the steps of the voxels"});
+      warn({WarningCode::edge_length, "",
+            "a deviation of " + number(*o_.deviation_mm) + " mm is far below the pixel (" + number(o_.pixel_mm) +
+                " mm): it follows the steps of the voxels"});
     // As edges grow with the root of their deviation, so does the smallest one.
-    s.edge_min_mm = o_.edge_min_mm.value_or(std::max(1.0, 1.5 * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0)) * o_.pixel_mm);
+    s.edge_min_mm = o_.edge_min_mm.value_or(
+        std::max(1.0, 1.5 * (o_.drawn_gap_mm > 0 ? std::sqrt(usual_deviation_mm() / (0.5 * o_.pixel_mm)) : 1.0)) *
+        o_.pixel_mm);
     std::map<Label, std::array<Vec3, 2>> boxes;
     for (const MeshTriangle& t : mesh.triangles) {
       const auto [below, above] = mesh.labels_of(t.patch);
@@ -267,8 +278,9 @@ class Enhancement {
       const double asked = own != o_.label_edge_mm.end() ? own->second : o_.edge_length_mm.value_or(0);
       if (asked > longest / 3) {
         s.label_edge_mm[label] = kAim * longest / 3;
-        warn(warning_at(WarningCode::edge_length, "label " + std::to_string(label), "an edge length of " + number(asked) +
-             " mm is too large for its " + number(longest) + " mm; " + number(longest / 3) + " mm is used"));
+        warn(warning_at(WarningCode::edge_length, "label " + std::to_string(label),
+                        "an edge length of " + number(asked) + " mm is too large for its " + number(longest) + " mm; " +
+                            number(longest / 3) + " mm is used"));
       } else if (own != o_.label_edge_mm.end()) {
         s.label_edge_mm[label] = kAim * asked;
       }
@@ -285,7 +297,8 @@ class Enhancement {
   /// Shorter ones only for a target that was requested.
   /// @return the triangles that go with the target.
   double coarsen(const ComplexMesh& mesh, std::vector<double>& size) {
-    const std::size_t target = o_.target_tets.value_or(std::min(kMostTets, kUsualTets + kMoreTets * (volumes_.empty() ? 0 : volumes_.size() - 1)));
+    const std::size_t target = o_.target_tets.value_or(
+        std::min(kMostTets, kUsualTets + kMoreTets * (volumes_.empty() ? 0 : volumes_.size() - 1)));
     const double longer = expected_tets(mesh, size, volumes_).times_longer_for(static_cast<double>(target));
     const double triangles = expected_triangles(mesh, size) / (longer * longer);
     if (o_.target_tets && longer < 0.98) {
@@ -294,9 +307,12 @@ class Enhancement {
     }
     if (longer > 1.02) {
       result_.coarsened = longer;
-      for (std::size_t v = 0; v < size.size(); ++v) size[v] = std::min(longer * size[v], std::max(size[v], kOfShell * shell_[v]));
-      warn({WarningCode::edge_length, "", "edges were made " + number(longer) + " times longer than the default, for a target of " +
-           std::to_string(target) + " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones"});
+      for (std::size_t v = 0; v < size.size(); ++v)
+        size[v] = std::min(longer * size[v], std::max(size[v], kOfShell * shell_[v]));
+      warn({WarningCode::edge_length, "",
+            "edges were made " + number(longer) + " times longer than the default, for a target of " +
+                std::to_string(target) +
+                " tetrahedra; --target-tets, --edge-length or --deviation ask for finer ones"});
     }
     return triangles;
   }
@@ -320,10 +336,13 @@ class Enhancement {
     const double share = (walls + pieces + bends) / std::max(all, 1e-300);
     if (share < kMuchOfIt) return;
     std::string why;
-    for (const auto& [part, what] : {std::pair{walls, "where walls are thin"}, {pieces, "on small pieces"}, {bends, "where it bends"}})
+    for (const auto& [part, what] :
+         {std::pair{walls, "where walls are thin"}, {pieces, "on small pieces"}, {bends, "where it bends"}})
       if (part > 0.005 * all) why += (why.empty() ? "" : ", ") + number(std::round(100 * part / all)) + " % " + what;
-    warn({WarningCode::edge_length, "", "edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " + number(std::round(100 * share)) + " % of the surface (" + why +
-         "), as longer ones would cut off too much there"});
+    warn({WarningCode::edge_length, "",
+          "edges are shorter than the " + number(*o_.edge_length_mm) + " mm requested on " +
+              number(std::round(100 * share)) + " % of the surface (" + why +
+              "), as longer ones would cut off too much there"});
   }
 
   void refuse_giants(double triangles) const {
@@ -349,7 +368,8 @@ class Enhancement {
     r.sheet_angle_deg = o_.sheet_angle_deg;
     r.threads = o_.threads;
     // An edge length that was requested gives way only where something would be cut off.
-    r.deviation_mm = o_.edge_length_mm ? std::max(0.5 * o_.pixel_mm, 0.4 * *o_.edge_length_mm) : result_.coarsened * result_.coarsened * sizes.deviation_mm;
+    r.deviation_mm = o_.edge_length_mm ? std::max(0.5 * o_.pixel_mm, 0.4 * *o_.edge_length_mm)
+                                       : result_.coarsened * result_.coarsened * sizes.deviation_mm;
     r.shortest_mm = std::min(1.0, result_.coarsened) * sizes.edge_min_mm;
     r.gradation = o_.gradation;
     if (o_.faired != nullptr) r.when_coarse = [&] { settle(mesh); };  // a coarse mesh has fewer vertices to move
@@ -372,9 +392,10 @@ class Enhancement {
     restore(mesh, keep);
   }
 
-  /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps. By default it
-  /// may cost little distance: single steps go for that; of larger ones (of images with finer voxels than they were taken
-  /// with) only a light pass takes some. What is requested beyond the default follows, whatever it costs, with limits of its own.
+  /// On even triangles a low-pass takes away what the needles of the stitched surface kept of the voxels' steps. By
+  /// default it may cost little distance: single steps go for that; of larger ones (of images with finer voxels than
+  /// they were taken with) only a light pass takes some. What is requested beyond the default follows, whatever it
+  /// costs, with limits of its own.
   void soften(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     if (o_.smooth_passes == 0) return;
     SmoothingOptions s;
@@ -392,17 +413,15 @@ class Enhancement {
     s.taubin_mu = -0.53;
     const std::vector<Vec3> to = smoothed_places(mesh, s);
     const double reach = 2 * std::max(o_.pixel_mm, o_.gap_mm);
-    if (distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm)
-      smooth(mesh, light);
-    else
-      move_guarded(mesh, to, keep, o_.threads);
+    if (distance_gained(mesh, samples_, to, reach, o_.threads) > kSmoothingCost * o_.pixel_mm) smooth(mesh, light);
+    else move_guarded(mesh, to, keep, o_.threads);
     if (o_.smooth_passes <= kSmoothPasses) return;
     s.passes = o_.smooth_passes - kSmoothPasses;
     smooth(mesh, s);
   }
 
-  /// Brings the vertices of smooth drawn outlines back onto the surface that they stand for, from which the rounds of fitting and relocation let them
-  /// drift; of rough outlines not, as that would undo the smoothing.
+  /// Brings the vertices of smooth drawn outlines back onto the surface that they stand for, from which the rounds of
+  /// fitting and relocation let them drift; of rough outlines not, as that would undo the smoothing.
   void draw_back(ComplexMesh& mesh, const std::vector<double>& size, const MoveLimits& keep) {
     const double share = 1 - roughness();
     if (!(share > 0)) return;
@@ -412,7 +431,9 @@ class Enhancement {
       if (mesh.star[v].empty() || mesh.is_fixed(v)) return;
       Vec3 d;
       if (!mesh.curve[v].empty()) {
-        if (const auto at = reference_->nearest_on_curve(to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), size[v])) d = *at - to[v];
+        if (const auto at =
+                reference_->nearest_on_curve(to[v], Reference::curve_key(mesh, v, mesh.curve[v][0]), size[v]))
+          d = *at - to[v];
       } else if (const auto foot = reference_->nearest(to[v], mesh.triangles[mesh.star[v][0]].patch, size[v], -1, 0)) {
         d = foot->point - to[v];
       }
@@ -442,8 +463,9 @@ class Enhancement {
     for (const auto& [label, v] : label_volumes(mesh)) {
       const double change = v / volumes_[label] - 1;
       if (std::abs(change) > 0.05)
-        warn(warning_at(WarningCode::volume_changed, "label " + std::to_string(label), "its volume changed by " + number(100 * change) + " % of " +
-             number(volumes_[label]) + " mm3 in the enhancement (it is small or thin for the edge length)"));
+        warn(warning_at(WarningCode::volume_changed, "label " + std::to_string(label),
+                        "its volume changed by " + number(100 * change) + " % of " + number(volumes_[label]) +
+                            " mm3 in the enhancement (it is small or thin for the edge length)"));
     }
   }
 
@@ -460,13 +482,12 @@ class Enhancement {
   std::optional<ComplexMesh> faired_;   // where the interfaces run
   std::vector<double> faired_bends_;    // at its vertices
   std::optional<Reference> reference_;  // the surface that the remeshed one stands for
-  SurfaceSamples samples_;  // of the stitched surface
+  SurfaceSamples samples_;              // of the stitched surface
 };
 
 }  // namespace
 
-EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options,
-                              Monitor& progress) {
+EnhanceResult enhance_complex(const InterfaceComplex& stitched, const EnhanceOptions& options, Monitor& progress) {
   return Enhancement(stitched, options, progress).run();
 }
 

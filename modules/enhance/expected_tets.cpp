@@ -21,7 +21,8 @@ double ExpectedTets::times_longer_for(double target) const {
   return high;
 }
 
-ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size, const std::map<Label, double>& volumes_mm3) {
+ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size,
+                           const std::map<Label, double>& volumes_mm3) {
   const std::size_t labels = mesh.labels().size();
   std::vector<double> area(labels, 0), triangles(labels, 0);
   for (const MeshTriangle& t : mesh.triangles) {

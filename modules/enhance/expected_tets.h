@@ -17,6 +17,7 @@ struct ExpectedTets {
 };
 
 /// @param size edge length at each vertex, mm; @param volumes_mm3 of the labels
-ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size, const std::map<Label, double>& volumes_mm3);
+ExpectedTets expected_tets(const ComplexMesh& mesh, const std::vector<double>& size,
+                           const std::map<Label, double>& volumes_mm3);
 
 }  // namespace stackmesh

@@ -13,10 +13,13 @@ namespace {
 constexpr double kWide = -0.5;  // cosine: two sheets further apart than this did not just turn through each other
 
 /// On which side of the triangle p q x the point y lies: the sign.
-double side_of(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& y) { return dot(cross(q - p, x - p), y - p); }
+double side_of(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& y) {
+  return dot(cross(q - p, x - p), y - p);
+}
 
-/// True when one of two triangles at a common edge turned through the other about it: they are on the other side of each other than
-/// before, and not by way of being flat. No exact test of crossings sees that, as both states are free of them.
+/// True when one of two triangles at a common edge turned through the other about it: they are on the other side of
+/// each other than before, and not by way of being flat. No exact test of crossings sees that, as both states are free
+/// of them.
 bool turned_past(double side_before, double cosine_before, double side, double cosine) {
   return (side_before > 0) != (side > 0) && side_before != 0 && side != 0 && cosine_before + cosine > 0;
 }
@@ -102,7 +105,9 @@ void TriangleGrid::remove(std::int32_t t) {
   boxes_[t] = Box{{1, 1, 1}, {0, 0, 0}, {}};  // covers no cell
 }
 
-Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg) : mesh_(mesh) { set_sheet_angle(sheet_angle_deg); }
+Guard::Guard(ComplexMesh& mesh, double sheet_angle_deg) : mesh_(mesh) {
+  set_sheet_angle(sheet_angle_deg);
+}
 
 void Guard::rebuild(double cell_mm) {
   grid_.build(mesh_, mesh_.points, cell_mm);
@@ -124,8 +129,7 @@ double Guard::narrowest_before(const Change& c) const {
       for (std::int32_t o : mesh_.star[v[k]]) {
         if (o == r) continue;
         const SharedCorners h = shared_corners(v, mesh_.triangles[o].v);
-        if (h.count == 2)
-          cosine = std::max(cosine, sheet_cosine(s, corners(mesh_.triangles[o].v, nullptr), h));
+        if (h.count == 2) cosine = std::max(cosine, sheet_cosine(s, corners(mesh_.triangles[o].v, nullptr), h));
       }
   }
   return cosine;
@@ -143,14 +147,18 @@ bool Guard::was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, d
   return false;
 }
 
-bool Guard::turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w, const Corners3& t,
-                           const SharedCorners& h, double cosine, const Change& c) const {
+bool Guard::turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s,
+                           const std::array<std::int32_t, 3>& w, const Corners3& t, const SharedCorners& h,
+                           double cosine, const Change& c) const {
   if (cosine < kWide) return false;
   const std::int32_t a = v[h.in_s[0]], b = v[h.in_s[1]];
-  if (a == c.moved || b == c.moved || w[0] == c.moved || w[1] == c.moved || w[2] == c.moved) return false;  // their edge moves as well
+  // their edge moves as well
+  if (a == c.moved || b == c.moved || w[0] == c.moved || w[1] == c.moved || w[2] == c.moved) return false;
   for (std::int32_t r : *c.removed) {
     const auto& old = mesh_.triangles[r].v;
-    const auto at = [&](std::int32_t x) { return static_cast<int>(std::find(old.begin(), old.end(), x) - old.begin()); };
+    const auto at = [&](std::int32_t x) {
+      return static_cast<int>(std::find(old.begin(), old.end(), x) - old.begin());
+    };
     const int i = at(a), j = at(b);
     if (i == 3 || j == 3 || mesh_.triangles[r].v == w) continue;
     SharedCorners before = h;
@@ -164,8 +172,8 @@ bool Guard::turned_through(const std::array<std::int32_t, 3>& v, const Corners3&
   return false;
 }
 
-bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
-                         const std::array<std::int32_t, 3>& w, const Change& c) {
+bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w,
+                         const Change& c) {
   const SharedCorners h = shared_corners(v, w);
   const Corners3 t = corners(w, &c);
   if (h.count == 0) {
@@ -226,10 +234,10 @@ std::vector<float> clearances(const ComplexMesh& mesh, const MoveLimits& limits)
   return out;
 }
 
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<float>& clearance,
-                                         const std::vector<Vec3>& before, const std::vector<Vec3>& points,
-                                         const std::vector<std::int32_t>& suspects, const MoveLimits& limits,
-                                         int threads) {
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+                                         const std::vector<float>& clearance, const std::vector<Vec3>& before,
+                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
+                                         const MoveLimits& limits, int threads) {
   const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree);
   const double corner = limits.corner_angle_deg * degree, turn = std::cos(limits.turn_deg * degree);
   const auto at = [&](const std::vector<Vec3>& p, std::int32_t t) {
@@ -276,7 +284,8 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
   // Where most are suspects, the buckets are gone through for pairs; else each suspect asks for its own.
   const bool by_bucket = 3 * suspects.size() > mesh.triangles.size();
   constexpr std::size_t kRun = 1024;
-  const std::size_t asked = (suspects.size() + kRun - 1) / kRun, swept = by_bucket ? (grid.bucket_count() + kRun - 1) / kRun : 0;
+  const std::size_t asked = (suspects.size() + kRun - 1) / kRun,
+                    swept = by_bucket ? (grid.bucket_count() + kRun - 1) / kRun : 0;
   std::vector<std::vector<std::int32_t>> found(asked + swept);
   parallel_for(asked + swept, threads, [&](std::size_t run) {
     auto& mine = found[run];

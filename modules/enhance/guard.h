@@ -15,7 +15,8 @@ class TriangleGrid {
  public:
   /// Takes all triangles of the mesh that are alive, with their corners at `points`; a triangle's box is wider by half
   /// its clearance to all sides (empty: by none).
-  void build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm, std::vector<float> clearance = {});
+  void build(const ComplexMesh& mesh, const std::vector<Vec3>& points, double cell_mm,
+             std::vector<float> clearance = {});
   void insert(std::int32_t t, const Corners3& corners);
   void remove(std::int32_t t);
 
@@ -24,8 +25,8 @@ class TriangleGrid {
   template <class Visit>
   bool query(const Corners3& corners, double margin, Visit visit) const;
 
-  /// Calls visit(i, j), i < j, for every two triangles whose boxes meet in cells of the buckets from first to last; a pair
-  /// may come twice, rarely.
+  /// Calls visit(i, j), i < j, for every two triangles whose boxes meet in cells of the buckets from first to last; a
+  /// pair may come twice, rarely.
   std::size_t bucket_count() const { return mask_ + 1; }
   template <class Visit>
   void pairs(std::size_t first, std::size_t last, std::vector<std::int32_t>& buffer, Visit visit) const;
@@ -35,8 +36,8 @@ class TriangleGrid {
     std::array<float, 3> low, high;
     std::array<std::int32_t, 3> cell = {0, 0, 0};  ///< of the low corner
     bool meets(const Box& o) const {
-      return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] && o.low[1] <= high[1] && low[2] <= o.high[2] &&
-             o.low[2] <= high[2];
+      return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] && o.low[1] <= high[1] &&
+             low[2] <= o.high[2] && o.low[2] <= high[2];
     }
   };
   /// A bucket's head; what does not fit is in blocks behind it.
@@ -103,11 +104,12 @@ class Guard {
 
  private:
   Corners3 corners(const std::array<std::int32_t, 3>& v, const Change* c) const;
-  bool pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s,
-                    const std::array<std::int32_t, 3>& w, const Change& c);
-  /// True when the new triangle turns through another one at their common edge, against the one of that edge which goes.
-  bool turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w, const Corners3& t,
-                      const SharedCorners& h, double cosine, const Change& c) const;
+  bool pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w,
+                    const Change& c);
+  /// True when the new triangle turns through another one at their common edge, against the one of that edge which
+  /// goes.
+  bool turned_through(const std::array<std::int32_t, 3>& v, const Corners3& s, const std::array<std::int32_t, 3>& w,
+                      const Corners3& t, const SharedCorners& h, double cosine, const Change& c) const;
   double narrowest_before(const Change& c) const;
   bool was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, double squared) const;
 
@@ -121,25 +123,24 @@ class Guard {
 
 /// What moves of many vertices at once must keep, each "not below, and not worse than before".
 struct MoveLimits {
-  double clearance_mm = 0;      ///< between triangles without a common corner
+  double clearance_mm = 0;                       ///< between triangles without a common corner
   const std::vector<double>* size_mm = nullptr;  ///< and, if given, this share of the smallest edge length requested at
   double clearance_rel = 0;                      ///< their corners
-  double sheet_angle_deg = 20;  ///< between triangles at a common edge
-  double corner_angle_deg = 0;  ///< smallest angle of a triangle
-  double turn_deg = 0;          ///< a triangle's normal turns by no more; 0: any turn is allowed
+  double sheet_angle_deg = 20;                   ///< between triangles at a common edge
+  double corner_angle_deg = 0;                   ///< smallest angle of a triangle
+  double turn_deg = 0;                           ///< a triangle's normal turns by no more; 0: any turn is allowed
 };
 
 /// For every triangle the distance that others have to keep from it, mm; two keep the mean of theirs.
 std::vector<float> clearances(const ComplexMesh& mesh, const MoveLimits& limits);
 
 /// Numbers of the triangles among `suspects` (and of those they meet) that cross or offend a limit with the
-/// corners at `points`, `before` being the places that are known to be good; the grid holds the triangles at `points` with
-/// their clearances. Ascending; independent of the
-/// thread count.
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid, const std::vector<float>& clearance,
-                                         const std::vector<Vec3>& before, const std::vector<Vec3>& points,
-                                         const std::vector<std::int32_t>& suspects, const MoveLimits& limits,
-                                         int threads);
+/// corners at `points`, `before` being the places that are known to be good; the grid holds the triangles at `points`
+/// with their clearances. Ascending; independent of the thread count.
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+                                         const std::vector<float>& clearance, const std::vector<Vec3>& before,
+                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
+                                         const MoveLimits& limits, int threads);
 
 /// Triangles that meet another beyond what they share, or have no area: 0 for a sound complex. Exact.
 std::size_t count_contacts(const ComplexMesh& mesh, int threads);
@@ -159,7 +160,8 @@ bool TriangleGrid::query(const Corners3& corners, double margin, Visit visit) co
             const Box& o = boxes_[t];
             if (!o.meets(b)) continue;
             // Reported only by the first cell that both are in.
-            if (std::max(o.cell[0], lo[0]) != i || std::max(o.cell[1], lo[1]) != j || std::max(o.cell[2], lo[2]) != k) continue;
+            if (std::max(o.cell[0], lo[0]) != i || std::max(o.cell[1], lo[1]) != j || std::max(o.cell[2], lo[2]) != k)
+              continue;
             if (!visit(t)) return false;
           }
         }

@@ -89,8 +89,7 @@ bool LocalOperations::split(std::int32_t a, std::int32_t b) {
   size_.push_back(asked(a, b));
   hints.push_back(hints[a]);
   touched_ = removed_;
-  for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t)
-    touched_.push_back(t);
+  for (std::int32_t t = first; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t) touched_.push_back(t);
   guard.update(touched_);
   ++counts.splits;
   return true;
@@ -179,22 +178,23 @@ bool LocalOperations::flip(std::int32_t a, std::int32_t b, double gain_rad, bool
   const double after = std::min(angle(one), angle(two));
   // Needles along a long edge lie back to back: it is turned for a shorter one, whatever the angles, and so on.
   const double needle = lenient ? 5 * kNeedle : kNeedle;
-  bool better = after > before + gain_rad || (before < needle && (after > 2 * before || length(c, d) < 0.9 * length(a, b)));
+  bool better =
+      after > before + gain_rad || (before < needle && (after > 2 * before || length(c, d) < 0.9 * length(a, b)));
   if (!better && valence && after > std::max(0.45, 0.8 * before)) {
-    const int was = ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) +
-                    ideal_valence_error(d, 0);
-    const int is = ideal_valence_error(a, -1) + ideal_valence_error(b, -1) + ideal_valence_error(c, 1) +
-                   ideal_valence_error(d, 1);
+    const int was =
+        ideal_valence_error(a, 0) + ideal_valence_error(b, 0) + ideal_valence_error(c, 0) + ideal_valence_error(d, 0);
+    const int is =
+        ideal_valence_error(a, -1) + ideal_valence_error(b, -1) + ideal_valence_error(c, 1) + ideal_valence_error(d, 1);
     better = is < was;
   }
   if (!better) return false;
   const Vec3 n0 = mesh_.area_vector(mesh_.triangles[t[0]].v), n1 = mesh_.area_vector(mesh_.triangles[t[1]].v);
   const Vec3 sum = unit(n0 + n1), m0 = unit(mesh_.area_vector(one)), m1 = unit(mesh_.area_vector(two));
   // The normal of a needle says nothing.
-  if ((dot(m0, sum) < kFlipBend && angle(one) > needle) || (dot(m1, sum) < kFlipBend && angle(two) > needle)) return false;
+  if ((dot(m0, sum) < kFlipBend && angle(one) > needle) || (dot(m1, sum) < kFlipBend && angle(two) > needle))
+    return false;
   // Where the four corners are far from a plane, the flip changes the surface.
-  const double out =
-      std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
+  const double out = std::abs(dot(sum, mesh_.points[a] + mesh_.points[b] - mesh_.points[c] - mesh_.points[d])) / 2;
   if (out > reach_rel() * asked(a, b)) return false;
   removed_ = {t[0], t[1]};
   added_ = {one, two};
@@ -332,8 +332,7 @@ bool LocalOperations::smooth_over(std::int32_t v) {
   if (mesh_.is_held(v) || mesh_.is_fixed(v) || mesh_.star[v].empty() || is_speck(v)) return false;
   const Vec3 here = mesh_.points[v];
   Vec3 mean;
-  if (mesh_.curve[v].empty())
-    mean = neighbours_mean(v);
+  if (mesh_.curve[v].empty()) mean = neighbours_mean(v);
   else
     for (std::int32_t c : mesh_.curve[v]) mean = mean + 0.5 * mesh_.points[c];
   Vec3 step = 0.7 * (mean - here);
@@ -355,8 +354,7 @@ Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
   const double reach = size_[v] + norm(p - here);
   Vec3 to = here;
   if (!mesh_.curve[v].empty()) {
-    const auto foot =
-        reference_.nearest_on_curve(p, Reference::curve_key(mesh_, v, mesh_.curve[v][0]), reach);
+    const auto foot = reference_.nearest_on_curve(p, Reference::curve_key(mesh_, v, mesh_.curve[v][0]), reach);
     if (foot) to = *foot;
   } else if (mesh_.flat[v]) {
     to = p;
@@ -371,8 +369,7 @@ Vec3 LocalOperations::drawn_to_reference(std::int32_t v, const Vec3& p) const {
   return to;
 }
 
-double LocalOperations::smallest_round(std::int32_t v, const Vec3& at,
-                                       const std::vector<Vec3>& fan_normals) const {
+double LocalOperations::smallest_round(std::int32_t v, const Vec3& at, const std::vector<Vec3>& fan_normals) const {
   double worst = 10;
   const auto& star = mesh_.star[v];
   for (std::size_t i = 0; i < star.size(); ++i) {
@@ -440,8 +437,7 @@ bool LocalOperations::relocate(std::int32_t v) {
         offer(here + (r * l * std::cos(phi)) * u + (r * l * std::sin(phi)) * w);
       }
   }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::stable_sort(places.begin(), places.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
   if (places.size() > 4) places.resize(4);
   for (const auto& [a, q] : places)
     if (move(v, q)) return true;

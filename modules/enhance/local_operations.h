@@ -17,7 +17,12 @@ class LocalOperations {
   /// `last_faces`: for each vertex the face of the reference where it last was, or -1.
   LocalOperations(ComplexMesh& mesh, std::vector<double>& size, std::vector<std::int32_t>& last_faces,
                   const Reference& reference, const RemeshOptions& options)
-      : guard(mesh, options.sheet_angle_deg), hints(last_faces), mesh_(mesh), size_(size), reference_(reference), o_(options) {}
+      : guard(mesh, options.sheet_angle_deg),
+        hints(last_faces),
+        mesh_(mesh),
+        size_(size),
+        reference_(reference),
+        o_(options) {}
 
   double asked(std::int32_t a, std::int32_t b) const { return 0.5 * (size_[a] + size_[b]); }
   double length(std::int32_t a, std::int32_t b) const { return norm(mesh_.points[a] - mesh_.points[b]); }
@@ -32,13 +37,14 @@ class LocalOperations {
   /// Flips where it makes the smallest angle larger by `gain_rad`; with `valence`, also where neighbour
   /// counts gain.
   bool flip(std::int32_t a, std::int32_t b, double gain_rad, bool valence);
-  /// Where a curve edge is the long side of a needle, which no flip may turn: the needle goes, its apex joins the curve.
+  /// Where a curve edge is the long side of a needle, which no flip may turn: the needle goes, its apex joins the
+  /// curve.
   bool absorb(std::int32_t a, std::int32_t b);
-  /// A tip that hangs on a loop of three edges, through a and b, becomes one triangle; no part of it may be further from that
-  /// than an edge length.
+  /// A tip that hangs on a loop of three edges, through a and b, becomes one triangle; no part of it may be further
+  /// from that than an edge length.
   bool cut_tip(std::int32_t a, std::int32_t b);
-  /// Where the sheet lies in a pleat at the triangle: the pleat goes, the hole gets the triangulation with the largest smallest
-  /// angle. What goes is thinner than 0.3 of the edge length.
+  /// Where the sheet lies in a pleat at the triangle: the pleat goes, the hole gets the triangulation with the largest
+  /// smallest angle. What goes is thinner than 0.3 of the edge length.
   bool unfold(std::int32_t triangle);
   /// Moves one vertex towards the middle of its neighbours, whatever the angles: it takes folds out.
   bool smooth_over(std::int32_t v);
@@ -50,8 +56,8 @@ class LocalOperations {
 
   Guard guard;
   RemeshCounts counts;
-  /// For the last bad triangles: operations may leave the surface further, fold it more, and merge junctions a short edge
-  /// apart.
+  /// For the last bad triangles: operations may leave the surface further, fold it more, and merge junctions a short
+  /// edge apart.
   bool lenient = false;
   /// For what is left then: sheets may come closer still.
   void set_last_resort(bool on) {
@@ -68,8 +74,10 @@ class LocalOperations {
   void fan_normals(std::int32_t v);
   Vec3 neighbours_mean(std::int32_t v) const;
   bool move(std::int32_t v, const Vec3& to);  ///< if the block and the guard allow it
-  bool crowds(std::int32_t v, const Vec3& to) const;  ///< nearer to a neighbour than it was, and near: thin necks are not to be drawn together
-  bool is_speck(std::int32_t v) const;  ///< its sheet, as far as curves, is of few triangles: one vertex could turn it inside out
+  /// nearer to a neighbour than it was, and near: thin necks are not to be drawn together
+  bool crowds(std::int32_t v, const Vec3& to) const;
+  /// its sheet, as far as curves, is of few triangles: one vertex could turn it inside out
+  bool is_speck(std::int32_t v) const;
   bool may_vanish(std::int32_t v) const;  ///< free within its sheet
   /// Puts the best triangulation of the loop, seen along the normal, in the place of the region.
   bool fill_loop(const std::vector<std::int32_t>& region, const std::vector<std::int32_t>& loop, const Vec3& normal);

@@ -27,7 +27,8 @@ void Reference::Cells::build(std::size_t count, double cell_mm, int threads, Cor
     }
     return std::pair{low, high};
   };
-  // Needles much longer than a cell (outlines drawn with tens of thousands of points) would be listed in thousands of cells each.
+  // Needles much longer than a cell (outlines drawn with tens of thousands of points) would be listed in thousands of
+  // cells each.
   constexpr double kMostCells = 200;  // of a face, on average
   for (double most = kMostCells * static_cast<double>(count);; cell_mm *= 2) {
     double sum = 0;
@@ -75,7 +76,8 @@ void Reference::Cells::around(const Vec3& p, double r, Visit visit) const {
       }
 }
 
-std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, const std::vector<std::int32_t>* patch_of) {
+std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b,
+                                   const std::vector<std::int32_t>* patch_of) {
   std::vector<std::int32_t> around;
   mesh.edge_triangles(a, b, around);
   for (std::int32_t& t : around) {
@@ -90,8 +92,8 @@ std::uint64_t Reference::curve_key(const ComplexMesh& mesh, std::int32_t a, std:
 
 namespace {
 
-/// Of a vertex on a curve or ridge: the triangles about it that are reached from `start` without passing one; empty for any other vertex. A normal
-/// averaged over a ridge would round off what it parts.
+/// Of a vertex on a curve or ridge: the triangles about it that are reached from `start` without passing one; empty for
+/// any other vertex. A normal averaged over a ridge would round off what it parts.
 std::vector<std::int32_t> on_this_side(const ComplexMesh& mesh, std::int32_t v, std::int32_t start) {
   std::vector<std::int32_t> reached;
   if (mesh.curve[v].empty()) return reached;
@@ -101,7 +103,8 @@ std::vector<std::int32_t> on_this_side(const ComplexMesh& mesh, std::int32_t v, 
       if (w == v || std::find(mesh.curve[v].begin(), mesh.curve[v].end(), w) != mesh.curve[v].end()) continue;
       for (const std::int32_t o : mesh.star[v]) {
         const auto& c = mesh.triangles[o].v;
-        if ((c[0] == w || c[1] == w || c[2] == w) && std::find(reached.begin(), reached.end(), o) == reached.end()) reached.push_back(o);
+        if ((c[0] == w || c[1] == w || c[2] == w) && std::find(reached.begin(), reached.end(), o) == reached.end())
+          reached.push_back(o);
       }
     }
   return reached;
@@ -138,13 +141,16 @@ void Reference::add_faces(const ComplexMesh& mesh, const std::vector<std::int32_
         const MeshTriangle& other = mesh.triangles[o];
         if (other.patch != t.patch) continue;
         const Vec3 a = mesh.area_vector(other.v);
-        if (dot(a, area) > 0.5 * size * norm(a) && (side.empty() || std::find(side.begin(), side.end(), o) != side.end())) sum = sum + a;
+        if (dot(a, area) > 0.5 * size * norm(a) &&
+            (side.empty() || std::find(side.begin(), side.end(), o) != side.end()))
+          sum = sum + a;
         const std::int32_t w = t.v[(k + 1) % 3];
         if (o != f.triangle && (other.v[0] == w || other.v[1] == w || other.v[2] == w))
           f.next[k] = beyond++ == 0 ? number[o] : -1;
       }
       const double l = norm(sum), scale = l > 0 ? 1 / l : 0;
-      normals_[n][k] = {static_cast<float>(scale * sum.x), static_cast<float>(scale * sum.y), static_cast<float>(scale * sum.z)};
+      normals_[n][k] = {static_cast<float>(scale * sum.x), static_cast<float>(scale * sum.y),
+                        static_cast<float>(scale * sum.z)};
     }
     const Vec3 c = (1 / 3.0) * (f.p[0] + f.p[1] + f.p[2]);
     const double r = std::max({norm(f.p[0] - c), norm(f.p[1] - c), norm(f.p[2] - c)});
@@ -182,7 +188,8 @@ Reference::Reference(const ComplexMesh& mesh, double cell_mm, int threads, const
   for (std::int32_t a = 0; a < static_cast<std::int32_t>(mesh.points.size()); ++a)
     for (std::int32_t b : mesh.curve[a])
       if (a < b)
-        if (const std::uint64_t key = curve_key(mesh, a, b); known.count(key) == 0) segments_.push_back({mesh.points[a], mesh.points[b], key});
+        if (const std::uint64_t key = curve_key(mesh, a, b); known.count(key) == 0)
+          segments_.push_back({mesh.points[a], mesh.points[b], key});
   face_cells_.build(faces_.size(), cell_mm, threads, [&](std::size_t n) { return faces_[n].p; });
   segment_cells_.build(segments_.size(), cell_mm, threads, [&](std::size_t n) {
     return std::array<Vec3, 2>{segments_[n].a, segments_[n].b};
@@ -226,8 +233,8 @@ Reference::Foot Reference::foot_at(const Candidate& c) const {
     normal = normal + w * at;
   }
   const double l = norm(normal);
-  return Foot{c.point + 0.6 * (bulged - c.point), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, c.face, face.triangle,
-              distance};
+  return Foot{c.point + 0.6 * (bulged - c.point), l > 0 ? (1 / l) * normal : (1 / std::sqrt(size)) * n, c.face,
+              face.triangle, distance};
 }
 
 std::optional<Reference::Foot> Reference::nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint,

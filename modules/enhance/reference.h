@@ -15,8 +15,8 @@ namespace stackmesh {
 /// smooth to the eye and nearly G1.
 class Reference {
  public:
-  /// @param faired where the sheets and the curves between three labels run, if that is known better than by `mesh`; caps, ridges and
-  /// interfaces that it lacks are the mesh's own
+  /// @param faired where the sheets and the curves between three labels run, if that is known better than by `mesh`;
+  /// caps, ridges and interfaces that it lacks are the mesh's own
   Reference(const ComplexMesh& mesh, double cell_mm, int threads, const ComplexMesh* faired = nullptr);
   /// True when its faces are the triangles of the mesh, in their order.
   bool is_the_mesh() const { return is_the_mesh_; }
@@ -28,15 +28,17 @@ class Reference {
     std::int32_t triangle = -1;  ///< of the mesh, as it was numbered at construction
     double distance_mm = 0;      ///< to the plain triangle
   };
-  /// Nearest point on triangles of that patch, not further than `reach_mm`. From `hint`, the face of a foot nearby or -1,
-  /// the search walks downhill over neighbours; a foot found so within `trust_mm` is taken (on a folded surface another
-  /// sheet may be nearer), else all faces near p are searched.
-  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint, double trust_mm) const;
+  /// Nearest point on triangles of that patch, not further than `reach_mm`. From `hint`, the face of a foot nearby or
+  /// -1, the search walks downhill over neighbours; a foot found so within `trust_mm` is taken (on a folded surface
+  /// another sheet may be nearer), else all faces near p are searched.
+  std::optional<Foot> nearest(const Vec3& p, std::int32_t patch, double reach_mm, std::int32_t hint,
+                              double trust_mm) const;
   /// Nearest point on curves between the same patches as the curve of `key`.
   std::optional<Vec3> nearest_on_curve(const Vec3& p, std::uint64_t key, double reach_mm) const;
 
   /// What tells curves apart: the patches that meet there.
-  static std::uint64_t curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b, const std::vector<std::int32_t>* patch_of = nullptr);
+  static std::uint64_t curve_key(const ComplexMesh& mesh, std::int32_t a, std::int32_t b,
+                                 const std::vector<std::int32_t>* patch_of = nullptr);
 
   /// Centres of its triangles, with their patches.
   std::size_t face_count() const { return faces_.size(); }

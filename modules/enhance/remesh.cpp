@@ -32,7 +32,8 @@ class Remesher {
     for (int pass = 0; pass < (number + 2 < o_.rounds ? 1 : 2); ++pass) move(relocated());
   }
 
-  /// Edges that blocks could not work on, in the whole: turned where that helps (rows of points lie along them), else split.
+  /// Edges that blocks could not work on, in the whole: turned where that helps (rows of points lie along them), else
+  /// split.
   void split_rest() {
     regrid();
     for (int pass = 0; pass < 20; ++pass) {
@@ -127,8 +128,8 @@ class Remesher {
     }
   }
 
-  /// Collapses edges below 1 / sqrt 2 in stages, the shortest first; what was tried in vain is tried again only where the
-  /// surface has changed since.
+  /// Collapses edges below 1 / sqrt 2 in stages, the shortest first; what was tried in vain is tried again only where
+  /// the surface has changed since.
   void collapse_short(const std::vector<double>& stages, double floor_rad) {
     std::vector<int> changed(mesh_.points.size(), 0);
     std::vector<std::int32_t> around;
@@ -145,10 +146,8 @@ class Remesher {
         const bool a_first = mesh_.star[a].size() <= mesh_.star[b].size();
         const std::int32_t one = a_first ? a : b, two = a_first ? b : a;
         std::int32_t kept = -1;
-        if (ops_.collapse(one, two, floor_rad))
-          kept = two;
-        else if (ops_.collapse(two, one, floor_rad))
-          kept = one;
+        if (ops_.collapse(one, two, floor_rad)) kept = two;
+        else if (ops_.collapse(two, one, floor_rad)) kept = one;
         if (kept < 0) continue;
         ++done;
         mesh_.neighbours(kept, around);
@@ -182,7 +181,9 @@ class Remesher {
     return to;
   }
 
-  void move(const std::vector<Vec3>& to) { ops_.counts.relocations += move_guarded(mesh_, to, limits(), o_.threads).moved; }
+  void move(const std::vector<Vec3>& to) {
+    ops_.counts.relocations += move_guarded(mesh_, to, limits(), o_.threads).moved;
+  }
 
   MoveLimits limits() const {
     MoveLimits keep;
@@ -222,8 +223,9 @@ class Remesher {
     });
   }
 
-  /// Places after a step of a fit to the reference: vertices move by the mean distance, along the triangles' normals, of
-  /// samples on their triangles, weighted by the vertex's share in the sample; over-relaxed, as neighbours move alike.
+  /// Places after a step of a fit to the reference: vertices move by the mean distance, along the triangles' normals,
+  /// of samples on their triangles, weighted by the vertex's share in the sample; over-relaxed, as neighbours move
+  /// alike.
   std::vector<Vec3> fitted() {
     static constexpr double kAt[3][3] = {{2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
     constexpr double kOverRelaxed = 2, kTrust = 0.3;
@@ -291,11 +293,13 @@ class Remesher {
     return done;
   }
 
-  /// Moves the vertices of bad triangles, and those next to them, to where the surface is even; pleats that stay are cut out.
+  /// Moves the vertices of bad triangles, and those next to them, to where the surface is even; pleats that stay are
+  /// cut out.
   std::size_t smooth_bad() {
     std::vector<std::int32_t> all, around;
     const double limit = 0.5 * o_.mend_angle_deg * kDegree;
-    const std::vector<std::int32_t> bad = triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit || is_folded(x); });
+    const std::vector<std::int32_t> bad =
+        triangles_that([&](std::int32_t x) { return ops_.angle(mesh_.triangles[x].v) < limit || is_folded(x); });
     for (std::int32_t t : bad)
       for (std::int32_t v : mesh_.triangles[t].v) {
         all.push_back(v);
@@ -353,7 +357,8 @@ class Remesher {
   const Reference& reference_;
   const RemeshOptions& o_;
   LocalOperations ops_;
-  std::vector<std::array<std::int32_t, 3>> last_;  ///< the face of the reference where each sample of a triangle last was
+  /// the face of the reference where each sample of a triangle last was
+  std::vector<std::array<std::int32_t, 3>> last_;
 };
 
 /// Sizes shrink where centres of the reference's triangles are further from the mesh than allowed.
@@ -368,7 +373,8 @@ void shorten_where_off(const ComplexMesh& mesh, std::vector<double>& size, const
   std::vector<float> factor(mesh.triangles.size(), 1);
   std::vector<std::pair<std::int32_t, float>> off(reference.face_count(), {-1, 1.0f});
   constexpr std::size_t kChunk = 512;
-  const std::size_t step = off.size() > 4 * mesh.triangles.size() ? 4 : off.size() > 2 * mesh.triangles.size() ? 2 : 1;  // enough of them
+  // enough of them
+  const std::size_t step = off.size() > 4 * mesh.triangles.size() ? 4 : off.size() > 2 * mesh.triangles.size() ? 2 : 1;
   parallel_for((off.size() + kChunk - 1) / kChunk, o.threads, [&](std::size_t chunk) {
     std::int32_t hint = -1;
     for (std::size_t f = chunk * kChunk; f < std::min(off.size(), (chunk + 1) * kChunk); f += step) {
@@ -443,8 +449,8 @@ RemeshCounts remesh(ComplexMesh& mesh, std::vector<double>& size, const Referenc
     RemeshOptions one = options;
     one.threads = 1;
     const double margin = 1.01 * options.clearance_rel * *std::max_element(size.begin(), size.end());
-    std::vector<MeshBlock> blocks = cut_into_blocks(mesh, size, hints, std::min(kBlock, mesh.points.size() / 4), cut, margin,
-                                                    options.threads);
+    std::vector<MeshBlock> blocks =
+        cut_into_blocks(mesh, size, hints, std::min(kBlock, mesh.points.size() / 4), cut, margin, options.threads);
     std::vector<RemeshCounts> each(blocks.size());
     parallel_for(blocks.size(), options.threads, [&](std::size_t i) {
       MeshBlock& b = blocks[i];

@@ -11,7 +11,7 @@ namespace stackmesh {
 
 struct RemeshOptions {
   int rounds = 4;               ///< of split, collapse, flip, relocate
-  int fit_passes = 6;                     ///< of the least-squares fit to the reference
+  int fit_passes = 6;           ///< of the least-squares fit to the reference
   int finish_sweeps = 6;        ///< over the worst triangles
   double good_angle_deg = 32;   ///< triangles below are worked on at the end
   int mend_sweeps = 8;          ///< by stronger means
@@ -21,7 +21,8 @@ struct RemeshOptions {
   double deviation_rel = 0.15;  ///< of the edge length: how far a collapse or flip may leave the surface
   double deviation_mm = 0;      ///< where the reference is further from the mesh, edges get shorter; 0: nowhere
   double shortest_mm = 0;       ///< but not below this
-  double most_triangles = 0;    ///< edges that get shorter for the deviation all get longer again beyond it; 0: no limit
+  /// edges that get shorter for the deviation all get longer again beyond it; 0: no limit
+  double most_triangles = 0;
   double gradation = 1.3;
   int threads = 0;
   std::function<void()> when_coarse;  ///< is called once, before the rounds: it may move vertices of the mesh

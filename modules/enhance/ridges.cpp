@@ -57,7 +57,9 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
     const Vec3 d = mesh.points[b] - mesh.points[a];
     return o.upright_deg > 0 && std::abs(d.z) > kUpright * norm(d);
   };
-  const auto limit = [&](bool upright, double share) { return std::cos(share * (upright ? o.upright_deg : o.feature_deg) * M_PI / 180); };
+  const auto limit = [&](bool upright, double share) {
+    return std::cos(share * (upright ? o.upright_deg : o.feature_deg) * M_PI / 180);
+  };
   const Facets facets(mesh, threads);
   const std::vector<std::array<std::int32_t, 2>> edges = mesh.edges();
   std::vector<char> is_sharp(edges.size(), 0);
@@ -66,7 +68,8 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
     if (mesh.is_curve_edge(a, b)) return;
     ShortList around;
     for (std::int32_t t : mesh.star[a])
-      if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b) around.push_back(t);
+      if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b)
+        around.push_back(t);
     const Vec3 &n = facets.area[around[0]], &m = facets.area[around[1]];
     is_sharp[e] = dot(n, m) <= limit(is_upright(a, b), 1) * norm(n) * norm(m);
   });
@@ -124,7 +127,8 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
         }
         caps += !mesh.curve[v].empty();
       }
-      if (length >= o.length_mm || (upright && (length >= o.upright_length_mm || caps == 2))) chosen.insert(chosen.end(), chain.begin(), chain.end());
+      if (length >= o.length_mm || (upright && (length >= o.upright_length_mm || caps == 2)))
+        chosen.insert(chosen.end(), chain.begin(), chain.end());
     }
   for (const auto& [a, b] : chosen) {
     mesh.add_ridge(a, b);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kPasses = 4;
 constexpr double kCornerAngle = 18;  // degrees: a triangle may become that narrow for it
-constexpr double kAcross = 0.7;  // cosine: the way apart leads off at least one of the two sheets
+constexpr double kAcross = 0.7;      // cosine: the way apart leads off at least one of the two sheets
 
 /// Two triangles that are too near.
 struct NearPair {
@@ -21,7 +21,8 @@ struct NearPair {
 
 class Separation {
  public:
-  Separation(const ComplexMesh& mesh, const std::vector<float>& gaps, const std::vector<Vec3>& origin, double sheet_angle_deg)
+  Separation(const ComplexMesh& mesh, const std::vector<float>& gaps, const std::vector<Vec3>& origin,
+             double sheet_angle_deg)
       : mesh_(mesh), gaps_(gaps), origin_(origin), angle_(sheet_angle_deg * M_PI / 180), step_(mesh.points.size()) {}
 
   Corners3 corners(std::int32_t t) const {
@@ -59,10 +60,8 @@ class Separation {
       push(p.i, s, n.on_s, move);
       push(p.j, t, n.on_t, -1.0 * move);
     };
-    if (h.count == 1)
-      each_off_corner(s, t, h, gap(p), apart);
-    else
-      apart(nearest_points(s, t), gap(p));
+    if (h.count == 1) each_off_corner(s, t, h, gap(p), apart);
+    else apart(nearest_points(s, t), gap(p));
   }
 
   std::vector<Vec3> places() const {
@@ -80,8 +79,8 @@ class Separation {
   }
 
  private:
-  /// Of triangles with a common corner: calls visit(points, gap) for each other corner that is nearer to the other triangle than
-  /// the gap and the angle, seen from the common corner, allow.
+  /// Of triangles with a common corner: calls visit(points, gap) for each other corner that is nearer to the other
+  /// triangle than the gap and the angle, seen from the common corner, allow.
   template <class Visit>
   void each_off_corner(const Corners3& s, const Corners3& t, const SharedCorners& h, double gap_mm, Visit visit) const {
     const Vec3& common = s[h.in_s[0]];
@@ -150,8 +149,8 @@ class Separation {
 
 }  // namespace
 
-SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& size, double gap_rel, const MoveLimits& keep,
-                                int threads) {
+SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& size, double gap_rel,
+                                const MoveLimits& keep, int threads) {
   MoveLimits wide = keep;
   wide.size_mm = &size;
   wide.clearance_rel = gap_rel;
@@ -170,9 +169,10 @@ SmoothingResult separate_sheets(ComplexMesh& mesh, const std::vector<double>& si
     const Separation all(mesh, gaps, origin, keep.sheet_angle_deg);
     parallel_for(found.size(), threads, [&](std::size_t run) {
       std::vector<std::int32_t> buffer;
-      grid.pairs(run * kRun, std::min(grid.bucket_count(), (run + 1) * kRun), buffer, [&](std::int32_t i, std::int32_t j) {
-        if (all.too_near({i, j})) found[run].push_back({i, j});
-      });
+      grid.pairs(run * kRun, std::min(grid.bucket_count(), (run + 1) * kRun), buffer,
+                 [&](std::int32_t i, std::int32_t j) {
+                   if (all.too_near({i, j})) found[run].push_back({i, j});
+                 });
     });
   }
   std::vector<NearPair> pairs;

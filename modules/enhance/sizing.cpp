@@ -13,10 +13,10 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kTurn = 0.34;      // over one edge of a uniform length a surface turns by no more than this, radians,
-constexpr double kShortest = 0.8;   // but edges are no shorter for it than this share of the length
+constexpr double kTurn = 0.34;     // over one edge of a uniform length a surface turns by no more than this, radians,
+constexpr double kShortest = 0.8;  // but edges are no shorter for it than this share of the length
 constexpr double kTurnByCurvature = 0.4;  // the same for lengths by curvature, down to the smallest length
-constexpr double kLossShare = 0.1;  // of a label's volume that chords may cut off, before the fit gives it back
+constexpr double kLossShare = 0.1;        // of a label's volume that chords may cut off, before the fit gives it back
 
 Vec3 unit(const Vec3& a) {
   const double l = norm(a);
@@ -47,8 +47,8 @@ std::vector<Vec3> averaged_normals(const ComplexMesh& mesh, int threads) {
   return normal;
 }
 
-/// The mean curvature at every vertex that is on no curve, 1 / mm: above 0 where the label that the normals point away from bulges. From
-/// normals averaged over a few rings.
+/// The mean curvature at every vertex that is on no curve, 1 / mm: above 0 where the label that the normals point away
+/// from bulges. From normals averaged over a few rings.
 std::vector<double> signed_bends(const ComplexMesh& mesh, int threads) {
   const std::vector<Vec3> normal = averaged_normals(mesh, threads);
   std::vector<double> out(mesh.points.size(), 0);
@@ -124,12 +124,15 @@ class Sizing {
       if (count > 0) bend_[v] = sum / count;
     });
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
-      if (fixed_[v] || o_.edge_length_mm) size_[v] = std::clamp(kTurn / std::max(bend_[v], 1e-12), kShortest * size_[v], size_[v]);
+      if (fixed_[v] || o_.edge_length_mm)
+        size_[v] = std::clamp(kTurn / std::max(bend_[v], 1e-12), kShortest * size_[v], size_[v]);
     });
     if (o_.edge_length_mm) return;
     for_each_index(size_.size(), o_.threads, [&](std::int32_t v) {
       if (!fixed_[v])
-        size_[v] = std::clamp(std::min(chord(1 / std::max(bend_[v], 1e-12), o_.deviation_mm), kTurnByCurvature / std::max(bend_[v], 1e-12)), std::min(o_.edge_min_mm, size_[v]), size_[v]);
+        size_[v] = std::clamp(std::min(chord(1 / std::max(bend_[v], 1e-12), o_.deviation_mm),
+                                       kTurnByCurvature / std::max(bend_[v], 1e-12)),
+                              std::min(o_.edge_min_mm, size_[v]), size_[v]);
     });
   }
 
@@ -158,16 +161,20 @@ class Sizing {
     keep_volumes(thin);
   }
 
-  /// Chords cut off what bulges. Edges are no longer than those that would cut a share of a label's volume off, as its bend predicts, were all
-  /// of its edges as long as that allows. So the bound does not depend on the length requested, and a longer one never makes shorter edges.
+  /// Chords cut off what bulges. Edges are no longer than those that would cut a share of a label's volume off, as its
+  /// bend predicts, were all of its edges as long as that allows. So the bound does not depend on the length requested,
+  /// and a longer one never makes shorter edges.
   void keep_volumes(const std::vector<double>& thin) {
     const std::size_t labels = mesh_.labels().size();
     const bool outside = !mesh_.labels().empty() && mesh_.labels()[0] == 0;  // number 0 is the outside
     const std::map<Label, double> volume = label_volumes(mesh_);
-    const std::vector<double> turns = signed_bends(mesh_, o_.threads);  // what bulges and dents in turn keeps the volume
+    // what bulges and dents in turn keeps the volume
+    const std::vector<double> turns = signed_bends(mesh_, o_.threads);
     std::vector<double> area(mesh_.triangles.size(), 0), radius(size_.size());
-    for_each_index(area.size(), o_.threads, [&](std::size_t t) { area[t] = norm(mesh_.area_vector(mesh_.triangles[t].v)); });
-    for_each_index(radius.size(), o_.threads, [&](std::size_t v) { radius[v] = std::min(1 / std::max(std::abs(turns[v]), 1e-12), 1e12); });
+    for_each_index(area.size(), o_.threads,
+                   [&](std::size_t t) { area[t] = norm(mesh_.area_vector(mesh_.triangles[t].v)); });
+    for_each_index(radius.size(), o_.threads,
+                   [&](std::size_t v) { radius[v] = std::min(1 / std::max(std::abs(turns[v]), 1e-12), 1e12); });
     // Of the thickness that a chord may cut off: the largest part, by bisection for each label.
     std::vector<double> low(labels, 0.6 * 0.6 * 0.6 * 0.6 * 0.6 * 0.6), high(labels, 1), part(labels, 1);
     for (int pass = 0; pass < 8; ++pass) {
@@ -198,7 +205,8 @@ class Sizing {
       for (std::int32_t t : mesh_.star[v])
         for (std::int32_t l : mesh_.sides(mesh_.triangles[t].patch)) least = std::min(least, part[l]);
       if (least < 1)
-        size_[v] = std::clamp(chord(radius[v], least * std::min(thin[v], 2 * radius[v])), std::min(o_.thin_min_mm, size_[v]), size_[v]);
+        size_[v] = std::clamp(chord(radius[v], least * std::min(thin[v], 2 * radius[v])),
+                              std::min(o_.thin_min_mm, size_[v]), size_[v]);
     });
   }
 
@@ -334,8 +342,7 @@ std::vector<double> surface_bends(const ComplexMesh& mesh, int threads) {
   for_each_index(n, threads, [&](std::int32_t v) {
     if (!mesh.curve[v].empty()) {
       if (mesh.curve[v].size() != 2) return;
-      const Vec3 a = mesh.points[mesh.curve[v][0]] - mesh.points[v],
-                 b = mesh.points[v] - mesh.points[mesh.curve[v][1]];
+      const Vec3 a = mesh.points[mesh.curve[v][0]] - mesh.points[v], b = mesh.points[v] - mesh.points[mesh.curve[v][1]];
       const double l = 0.5 * (norm(a) + norm(b));
       if (l > 0) bend[v] = 0.5 * norm(unit(a) - unit(b)) / l;  // half: a curve keeps some of its steps
       return;

@@ -43,8 +43,8 @@ struct Neighbours {
   bool moves(std::size_t v) const { return first[v] != first[v + 1]; }
 };
 
-/// Places of the vertices at which every label has the volume requested, to first order: label l grows by offset[l] along
-/// its normals; between a and b the sheet moves by the difference.
+/// Places of the vertices at which every label has the volume requested, to first order: label l grows by offset[l]
+/// along its normals; between a and b the sheet moves by the difference.
 std::vector<Vec3> places_of_volumes(const ComplexMesh& mesh, const std::map<Label, double>& volumes, double limit_mm,
                                     int threads) {
   std::map<Label, double> lack = volumes, offset, area;
@@ -139,8 +139,7 @@ std::vector<Vec3> smoothed_places(const ComplexMesh& mesh, const SmoothingOption
   return p;
 }
 
-SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets, const MoveLimits& keep,
-                             int threads) {
+SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets, const MoveLimits& keep, int threads) {
   SmoothingResult result;
   const std::size_t n = mesh.points.size();
   const std::vector<Vec3> before = mesh.points;
@@ -176,8 +175,7 @@ SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets
         continue;
       }
       share[v] = share[v] > 0.2f ? share[v] / 2 : 0;
-      now[v] =
-          share[v] > 0 ? before[v] + static_cast<double>(share[v]) * (targets[v] - before[v]) : before[v];
+      now[v] = share[v] > 0 ? before[v] + static_cast<double>(share[v]) * (targets[v] - before[v]) : before[v];
       suspects.insert(suspects.end(), mesh.star[v].begin(), mesh.star[v].end());
     }
     std::sort(suspects.begin(), suspects.end());

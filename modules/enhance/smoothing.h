@@ -14,8 +14,8 @@ struct SmoothingOptions {
          beta = 0.6;  ///< of HC-Laplacian smoothing: pull to the original, and share of the own correction
   double taubin_lambda = 0, taubin_mu = 0;  ///< both set: low-pass smoothing instead (\cite taubin1995)
   double limit_xy_mm = 0.5,
-         limit_z_mm = 0.5;   ///< half axes of the ellipsoid about its origin that a vertex stays in
-  std::vector<float> share;  ///< of the limits for each vertex; empty: all of them
+         limit_z_mm = 0.5;          ///< half axes of the ellipsoid about its origin that a vertex stays in
+  std::vector<float> share;         ///< of the limits for each vertex; empty: all of them
   std::map<Label, double> volumes;  ///< that the labels should have, mm3, as far as `volume_limit_mm` along the normals
   double volume_limit_mm = 0;       ///< gives them; 0: they are not looked at
   MoveLimits keep;
@@ -45,7 +45,6 @@ SmoothingResult restore_volumes(ComplexMesh& mesh, const std::map<Label, double>
                                 const MoveLimits& keep, int threads);
 
 /// Goes from mesh.points to `targets`: each vertex the whole way, a half, a quarter, an eighth or not at all.
-SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets, const MoveLimits& keep,
-                             int threads);
+SmoothingResult move_guarded(ComplexMesh& mesh, const std::vector<Vec3>& targets, const MoveLimits& keep, int threads);
 
 }  // namespace stackmesh

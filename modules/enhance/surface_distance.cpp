@@ -56,7 +56,8 @@ double mean_distance(const SurfaceSamples& samples, const ComplexMesh& mesh, dou
   return sum / static_cast<double>(off.size());
 }
 
-double distance_gained(ComplexMesh& mesh, const SurfaceSamples& samples, std::vector<Vec3> places, double reach_mm, int threads) {
+double distance_gained(ComplexMesh& mesh, const SurfaceSamples& samples, std::vector<Vec3> places, double reach_mm,
+                       int threads) {
   const double before = mean_distance(samples, mesh, reach_mm, threads);
   std::swap(mesh.points, places);
   const double after = mean_distance(samples, mesh, reach_mm, threads);

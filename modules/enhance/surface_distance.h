@@ -18,6 +18,7 @@ SurfaceSamples sample_surface(const ComplexMesh& mesh, std::size_t count);
 double mean_distance(const SurfaceSamples& samples, const ComplexMesh& mesh, double reach_mm, int threads);
 
 /// By how much the samples are further from the mesh, on average, when its vertices stand at `places`, mm.
-double distance_gained(ComplexMesh& mesh, const SurfaceSamples& samples, std::vector<Vec3> places, double reach_mm, int threads);
+double distance_gained(ComplexMesh& mesh, const SurfaceSamples& samples, std::vector<Vec3> places, double reach_mm,
+                       int threads);
 
 }  // namespace stackmesh

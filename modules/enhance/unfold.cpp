@@ -1,4 +1,5 @@
-// LocalOperations::unfold: a pleat of a sheet is cut out along a loop of edges and the hole is filled by its best triangulation.
+// LocalOperations::unfold: a pleat of a sheet is cut out along a loop of edges and the hole is filled by its best
+// triangulation.
 #include <algorithm>
 #include <cmath>
 
@@ -9,35 +10,35 @@ namespace stackmesh {
 namespace {
 
 constexpr std::size_t kMostTriangles = 48, kLongestLoop = 18;  // of what is cut out
-constexpr double kUpright = 0.3;   // cosine: the least between a new triangle's normal and that of the loop
-constexpr double kTurned = -0.5;   // cosine: a triangle beyond the loop that faces away more is a part of the pleat
-constexpr double kThickness = 0.3; // of the edge length: vertices that go are no further from the new triangles
+constexpr double kUpright = 0.3;    // cosine: the least between a new triangle's normal and that of the loop
+constexpr double kTurned = -0.5;    // cosine: a triangle beyond the loop that faces away more is a part of the pleat
+constexpr double kThickness = 0.3;  // of the edge length: vertices that go are no further from the new triangles
 
 /// Adds what is missing of the vertex's star, if that lies in one patch and is not frozen.
 bool add_star(const ComplexMesh& mesh, std::int32_t v, std::vector<std::int32_t>& region) {
   for (std::int32_t t : mesh.star[v]) {
-    if (mesh.is_frozen(t) || (!region.empty() && mesh.triangles[t].patch != mesh.triangles[region[0]].patch)) return false;
+    if (mesh.is_frozen(t) || (!region.empty() && mesh.triangles[t].patch != mesh.triangles[region[0]].patch))
+      return false;
     if (std::find(region.begin(), region.end(), t) == region.end()) region.push_back(t);
   }
   return region.size() <= kMostTriangles;
 }
 
-/// The loop of edges round a region, in the direction of its triangles; empty when there is not one that visits each vertex once.
+/// The loop of edges round a region, in the direction of its triangles; empty when there is not one that visits each
+/// vertex once.
 std::vector<std::int32_t> loop_round(const ComplexMesh& mesh, const std::vector<std::int32_t>& region) {
   std::vector<std::array<std::int32_t, 2>> rim;
   for (std::int32_t t : region)
     for (int k = 0; k < 3; ++k) {
       const std::array<std::int32_t, 2> back{mesh.triangles[t].v[(k + 1) % 3], mesh.triangles[t].v[k]};
       const auto it = std::find(rim.begin(), rim.end(), back);
-      if (it != rim.end())
-        rim.erase(it);
-      else
-        rim.push_back({back[1], back[0]});
+      if (it != rim.end()) rim.erase(it);
+      else rim.push_back({back[1], back[0]});
     }
   std::vector<std::int32_t> loop;
   if (rim.size() < 3 || rim.size() > kLongestLoop) return loop;
   loop.push_back(rim[0][0]);
-  for (std::int32_t at = rim[0][1]; at != loop[0]; ) {
+  for (std::int32_t at = rim[0][1]; at != loop[0];) {
     if (loop.size() == rim.size() || std::find(loop.begin(), loop.end(), at) != loop.end()) return {};
     loop.push_back(at);
     const auto next = std::find_if(rim.begin(), rim.end(), [&](const auto& e) { return e[0] == at; });
@@ -54,7 +55,8 @@ bool LocalOperations::may_vanish(std::int32_t v) const {
   return !mesh_.is_held(v) && !mesh_.pinned[v] && !mesh_.flat[v] && mesh_.curve[v].empty();
 }
 
-bool LocalOperations::fill_loop(const std::vector<std::int32_t>& region, const std::vector<std::int32_t>& loop, const Vec3& normal) {
+bool LocalOperations::fill_loop(const std::vector<std::int32_t>& region, const std::vector<std::int32_t>& loop,
+                                const Vec3& normal) {
   const int n = static_cast<int>(loop.size());
   const auto inside = [&](std::int32_t t) { return std::find(region.begin(), region.end(), t) != region.end(); };
   // A side of a new triangle that is no side of the loop must not be an edge elsewhere.
@@ -106,10 +108,13 @@ bool LocalOperations::fill_loop(const std::vector<std::int32_t>& region, const s
   const double thick = kThickness * size_[loop[0]];
   for (std::int32_t t : region)
     for (std::int32_t v : mesh_.triangles[t].v)
-      if (std::none_of(added_.begin(), added_.end(), [&](const auto& a) { return from(mesh_.points[v], a) <= thick; })) return false;
+      if (std::none_of(added_.begin(), added_.end(), [&](const auto& a) { return from(mesh_.points[v], a) <= thick; }))
+        return false;
   for (const auto& a : added_) {
     const Vec3 middle = (1 / 3.0) * (mesh_.points[a[0]] + mesh_.points[a[1]] + mesh_.points[a[2]]);
-    if (std::none_of(region.begin(), region.end(), [&](std::int32_t t) { return from(middle, mesh_.triangles[t].v) <= thick; })) return false;
+    if (std::none_of(region.begin(), region.end(),
+                     [&](std::int32_t t) { return from(middle, mesh_.triangles[t].v) <= thick; }))
+      return false;
   }
   removed_ = region;
   Change change;
@@ -133,7 +138,8 @@ bool LocalOperations::unfold(std::int32_t triangle) {
       const std::vector<std::int32_t> loop = loop_round(mesh_, region);
       if (loop.empty()) break;
       Vec3 area;
-      for (std::size_t i = 1; i + 1 < loop.size(); ++i) area = area + mesh_.area_vector({loop[0], loop[i], loop[i + 1]});
+      for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+        area = area + mesh_.area_vector({loop[0], loop[i], loop[i + 1]});
       const double l = norm(area);
       if (!(l > 0)) break;
       const Vec3 normal = (1 / l) * area;
@@ -157,11 +163,14 @@ bool LocalOperations::unfold(std::int32_t triangle) {
         }
       // A disc: as many triangles as its vertices within and on the loop mean.
       std::vector<std::int32_t> vertices;
-      for (std::int32_t t : region) vertices.insert(vertices.end(), mesh_.triangles[t].v.begin(), mesh_.triangles[t].v.end());
+      for (std::int32_t t : region)
+        vertices.insert(vertices.end(), mesh_.triangles[t].v.begin(), mesh_.triangles[t].v.end());
       std::sort(vertices.begin(), vertices.end());
       vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
       const std::size_t within = vertices.size() - loop.size();
-      if (region.size() == 2 * within + loop.size() - 2 && pleated && beyond > kTurned && fill_loop(region, loop, normal)) return true;
+      if (region.size() == 2 * within + loop.size() - 2 && pleated && beyond > kTurned &&
+          fill_loop(region, loop, normal))
+        return true;
       if (next < 0 || !add_star(mesh_, next, region)) break;
     }
   }

@@ -18,7 +18,8 @@ class Bender {
     double largest = 0;
     for (double h : net.spacing_mm) largest = std::max(largest, h);
     std::array<float, 3> weight;
-    for (int a = 0; a < 3; ++a) weight[a] = static_cast<float>(largest * largest / (net.spacing_mm[a] * net.spacing_mm[a]));
+    for (int a = 0; a < 3; ++a)
+      weight[a] = static_cast<float>(largest * largest / (net.spacing_mm[a] * net.spacing_mm[a]));
     const auto uses = [&](std::size_t v, int d) { return (net.uses[v] >> d & 1) != 0; };
     std::vector<float> share(n_);
     for_each_index(n_, options.threads, [&](std::size_t v) {
@@ -54,7 +55,8 @@ class Bender {
     double momentum = 1;
     std::vector<double> sums((n_ + kRun - 1) / kRun);
     for (int i = 0; i < options_.iterations; ++i) {
-      for_each_index(n_, options_.threads, [&](std::size_t v) { bend[v] = difference(y, v) + links_[v].place; }, kRun);
+      for_each_index(
+          n_, options_.threads, [&](std::size_t v) { bend[v] = difference(y, v) + links_[v].place; }, kRun);
       const double next_momentum = (1 + std::sqrt(1 + 4 * momentum * momentum)) / 2;
       const float ahead = static_cast<float>((momentum - 1) / next_momentum);
       parallel_for(sums.size(), options_.threads, [&](std::size_t run) {

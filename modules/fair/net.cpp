@@ -12,7 +12,8 @@ namespace {
 
 constexpr float kInside = 0.499F;  // strictly inside of a cell
 
-/// Labels around a cell: at(a, b, c) of the voxel (x - 1 + a, y - 1 + b, z - 1 + c); the outermost voxels go on beyond the border.
+/// Labels around a cell: at(a, b, c) of the voxel (x - 1 + a, y - 1 + b, z - 1 + c); the outermost voxels go on beyond
+/// the border.
 class Surroundings {
  public:
   Surroundings(const LabelVolume& volume, const StackAxes& axes) : voxels_(volume.voxels.data()) {
@@ -133,11 +134,13 @@ class NetBuilder {
         const FaceSheets f = face(c, label, axis, side);
         for (int g = 0; g < f.count; ++g) {
           std::uint16_t joined = f.edges[g];
-          out.erase(std::remove_if(out.begin(), out.end(), [&](std::uint16_t s) {
-                      const bool meets = (s & joined) != 0;
-                      if (meets) joined |= s;
-                      return meets;
-                    }), out.end());
+          out.erase(std::remove_if(out.begin(), out.end(),
+                                   [&](std::uint16_t s) {
+                                     const bool meets = (s & joined) != 0;
+                                     if (meets) joined |= s;
+                                     return meets;
+                                   }),
+                    out.end());
           // What was joined before may meet what was joined since.
           for (std::size_t k = 0; k < out.size();)
             if ((out[k] & joined) != 0) {
@@ -156,7 +159,8 @@ class NetBuilder {
 
   /// Slab z lies between the slices z - 1 and z.
   void find_vertices() {
-    const int width = net_.size[0], height = net_.size[1], slices = net_.size[2];  // clang takes no bindings into a lambda
+    // clang takes no bindings into a lambda
+    const int width = net_.size[0], height = net_.size[1], slices = net_.size[2];
     const int slabs = slices + 1;
     std::vector<std::vector<std::pair<Cell, std::uint16_t>>> found(slabs);
     const int step = slices_at_once(volume_, axes_, options_.threads);
@@ -182,7 +186,8 @@ class NetBuilder {
             const int l = std::max(x - 1, 0), r = std::min(x, width - 1);
             if ((mixed[l] | mixed[r] | (a[l] ^ a[r])) == 0) continue;
             const Cell cell = {x, y, z};
-            for (std::uint16_t s : sheets_of(cell, {a[l], a[r], b[l], b[r], c[l], c[r], d[l], d[r]}, sheets)) found[z].push_back({cell, s});
+            for (std::uint16_t s : sheets_of(cell, {a[l], a[r], b[l], b[r], c[l], c[r], d[l], d[r]}, sheets))
+              found[z].push_back({cell, s});
           }
         }
       }
@@ -248,16 +253,20 @@ class NetBuilder {
 
   bool shares_cell(std::int32_t v) const {
     const std::size_t i = static_cast<std::size_t>(v);
-    return (i > 0 && net_.cell[i - 1] == net_.cell[i]) || (i + 1 < net_.cell.size() && net_.cell[i + 1] == net_.cell[i]);
+    return (i > 0 && net_.cell[i - 1] == net_.cell[i]) ||
+           (i + 1 < net_.cell.size() && net_.cell[i + 1] == net_.cell[i]);
   }
 
   void set_bounds(std::int32_t v) {
     const Cell c = net_.cell[v];
     const std::array<int, 3> at = {c.x, c.y, c.z};
-    const bool real_below = real_slice(std::clamp(c.z - 1, 0, net_.size[2] - 1)), real_above = real_slice(std::clamp(c.z, 0, net_.size[2] - 1));
-    const float plane = std::max(kInside, static_cast<float>(real_below || real_above ? options_.band_px : options_.virtual_band_px) - 0.001F);
+    const bool real_below = real_slice(std::clamp(c.z - 1, 0, net_.size[2] - 1)),
+               real_above = real_slice(std::clamp(c.z, 0, net_.size[2] - 1));
+    const float plane = std::max(
+        kInside, static_cast<float>(real_below || real_above ? options_.band_px : options_.virtual_band_px) - 0.001F);
     const float along = std::max(kInside, static_cast<float>(options_.virtual_band_gaps));
-    Float3 low = {-plane, -plane, real_below ? -kInside : -along}, high = {plane, plane, real_above ? kInside : along}, start = {0, 0, 0};
+    Float3 low = {-plane, -plane, real_below ? -kInside : -along}, high = {plane, plane, real_above ? kInside : along},
+           start = {0, 0, 0};
     keep_room(c, low, high);
     if (shares_cell(v)) {  // each sheet stays on its side of the cell
       const Float3 middle = middle_of(net_.crossed[v]);
@@ -277,8 +286,8 @@ class NetBuilder {
     net_.way[v] = start;
   }
 
-  /// Where a label is only a few voxels thick, the sheets on either side of it share the room fairly: along every direction into
-  /// the cell's voxels each may go half of the way to the next sheet, less the room that it keeps.
+  /// Where a label is only a few voxels thick, the sheets on either side of it share the room fairly: along every
+  /// direction into the cell's voxels each may go half of the way to the next sheet, less the room that it keeps.
   void keep_room(const Cell& c, Float3& low, Float3& high) const {
     const float room = static_cast<float>(options_.thin_px);
     const bool wide = high[0] > 0.5F;
@@ -291,7 +300,9 @@ class NetBuilder {
         for (int a = 0; a < 3; ++a) step[a] = (axes >> a & 1) == 0 ? 0 : (corner >> a & 1) ? -1 : 1;
         if (label_(voxel[0] + step[0], voxel[1] + step[1], voxel[2] + step[2]) == own) continue;
         int thick = 1;  // voxels of the label from here on, away from the cell
-        while (thick < longest && label_(voxel[0] - thick * step[0], voxel[1] - thick * step[1], voxel[2] - thick * step[2]) == own) ++thick;
+        while (thick < longest &&
+               label_(voxel[0] - thick * step[0], voxel[1] - thick * step[1], voxel[2] - thick * step[2]) == own)
+          ++thick;
         if (thick == longest) continue;
         const float share = 0.5F * static_cast<float>(thick) - room;
         for (int a = 0; a < 3; ++a) {
@@ -327,7 +338,8 @@ class NetBuilder {
           step(cells[1], p);
           step(cells[1], q);
           step(cells[2], q);
-          const std::int32_t b = find(cells[0], 1 << cell_edge(axis, 0, 1)), m = find(cells[1], 1 << cell_edge(axis, 0, 0)),
+          const std::int32_t b = find(cells[0], 1 << cell_edge(axis, 0, 1)),
+                             m = find(cells[1], 1 << cell_edge(axis, 0, 0)),
                              d = find(cells[2], 1 << cell_edge(axis, 1, 0));
           if (b < 0 || m < 0 || d < 0) continue;
           made[z].push_back({{static_cast<std::int32_t>(v), b, m, d}, static_cast<std::uint8_t>(axis), low, high});

@@ -7,11 +7,15 @@
 namespace stackmesh::fair {
 namespace {
 
-Float3 operator-(const Float3& a, const Float3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Float3 operator-(const Float3& a, const Float3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 Float3 cross(const Float3& a, const Float3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-float dot(const Float3& a, const Float3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+float dot(const Float3& a, const Float3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 constexpr float kNeighbours = 0.8F;  // share of the neighbours in a step of averaging
 
@@ -75,13 +79,16 @@ class LocalVolumes {
         for (int a = 0; a < 3; ++a) normal[v][a] = length > 0 ? n[a] / length / h[a] : 0;  // a step along it, in voxels
       });
       for (int step = 0; step < reach; ++step) {
-        for_each_index(n_, threads_, [&](std::size_t v) {
-          const Mean& m = means[v];
-          std::array<float, 2> sum = {m.own * sums[v][0], m.own * sums[v][1]};
-          for (int d = 0; d < kDirections; ++d)
-            for (int i = 0; i < 2; ++i) sum[i] += m.share[d] * sums[m.next[d]][i];
-          next[v] = sum;
-        }, 4096);
+        for_each_index(
+            n_, threads_,
+            [&](std::size_t v) {
+              const Mean& m = means[v];
+              std::array<float, 2> sum = {m.own * sums[v][0], m.own * sums[v][1]};
+              for (int d = 0; d < kDirections; ++d)
+                for (int i = 0; i < 2; ++i) sum[i] += m.share[d] * sums[m.next[d]][i];
+              next[v] = sum;
+            },
+            4096);
         std::swap(sums, next);
       }
       for_each_index(n_, threads_, [&](std::size_t v) {
@@ -94,7 +101,8 @@ class LocalVolumes {
   }
 
  private:
-  /// Area vector of a quarter of the quads around v with a share of all ways gone, from the smaller label to the larger.
+  /// Area vector of a quarter of the quads around v with a share of all ways gone, from the smaller label to the
+  /// larger.
   Float3 area(std::size_t v, float share) const {
     Float3 sum = {0, 0, 0};
     const Cell& origin = net_.cell[v];

@@ -1,8 +1,8 @@
 #include "fair/true_grid.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -10,11 +10,11 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kLargest = 8;            // stored voxels in a true one
-constexpr double kSmallestBroken = 1.25;  // the same, of a ratio that is not whole
-constexpr std::size_t kFewest = 6, kFewestBroken = 8;  // planes that must differ from the one before
+constexpr double kLargest = 8;                          // stored voxels in a true one
+constexpr double kSmallestBroken = 1.25;                // the same, of a ratio that is not whole
+constexpr std::size_t kFewest = 6, kFewestBroken = 8;   // planes that must differ from the one before
 constexpr double kCovered = 0.7, kCoveredBroken = 0.8;  // share of the ends of blocks at which they must
-constexpr int kTries = 41;                // ratios tried for a number of blocks
+constexpr int kTries = 41;                              // ratios tried for a number of blocks
 
 /// Blocks along one axis: block m begins at the face `start + m * length` (face i lies before stored plane i).
 struct Blocks {
@@ -54,8 +54,8 @@ std::vector<char> changes_along(const LabelVolume& volume, int axis, int threads
   return out;
 }
 
-/// Where a block of that length may start so that all ends lie at changes: a face c ends a block that begins within half a
-/// plane of it. Nothing if there is no such place.
+/// Where a block of that length may start so that all ends lie at changes: a face c ends a block that begins within
+/// half a plane of it. Nothing if there is no such place.
 std::optional<double> common_start(const std::vector<int>& changes, double length) {
   // On a circle of that length, relative to the first change: all of them must lie within one plane.
   double low = -0.5, high = 0.5;
@@ -84,10 +84,13 @@ std::optional<Blocks> find_blocks(const std::vector<char>& changed, double store
     if (changed[i]) changes.push_back(static_cast<int>(i));
   if (changes.size() < kFewest) return std::nullopt;
   const int span = changes.back() - changes.front();
-  const auto covered = [&](double length) { return static_cast<double>(changes.size()) / (std::round(span / length) + 1); };
+  const auto covered = [&](double length) {
+    return static_cast<double>(changes.size()) / (std::round(span / length) + 1);
+  };
   int whole = 0;
   for (int c : changes) whole = std::gcd(whole, c - changes[0]);
-  if (whole >= 2 && whole <= kLargest && covered(whole) >= kCovered) return Blocks{static_cast<double>(whole), static_cast<double>(changes[0] % whole)};
+  if (whole >= 2 && whole <= kLargest && covered(whole) >= kCovered)
+    return Blocks{static_cast<double>(whole), static_cast<double>(changes[0] % whole)};
   if (changes.size() < kFewestBroken) return std::nullopt;
   // The most blocks first that can be: fewer would leave changes between their ends.
   for (int count = static_cast<int>(std::ceil(span / kLargest)); count <= span / kSmallestBroken; ++count) {
@@ -153,7 +156,8 @@ std::optional<TrueGrid> find_true_grid(const LabelVolume& volume, int threads) {
   for (int axis = 0; axis < 3; ++axis) {
     Blocks blocks;
     if (volume.size[axis] > 1)
-      if (const auto found = find_blocks(changes_along(volume, axis, threads), volume.spacing_mm[axis])) blocks = *found;
+      if (const auto found = find_blocks(changes_along(volume, axis, threads), volume.spacing_mm[axis]))
+        blocks = *found;
     planes[axis] = planes_of(blocks, volume.size[axis]);
     if (cut_at_border(blocks, planes[axis], volume.size[axis]) && reaches_border(volume, axis)) {
       blocks = {};  // the labels would go on beyond the image
@@ -185,7 +189,8 @@ std::string true_grid_warning(const std::array<double, 3>& stored_mm, const std:
     std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g mm", s[0], s[1], s[2]);
     return std::string(text);
   };
-  return "the labels were made on voxels of " + size(made_mm) + " and are stored as " + size(stored_mm) + ": they are taken as they were made (--as-stored takes the stored voxels)";
+  return "the labels were made on voxels of " + size(made_mm) + " and are stored as " + size(stored_mm) +
+         ": they are taken as they were made (--as-stored takes the stored voxels)";
 }
 
 }  // namespace stackmesh

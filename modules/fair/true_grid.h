@@ -9,8 +9,9 @@ namespace stackmesh {
 
 /// The grid on which labels were made, where they are stored on a finer one.
 struct TrueGrid {
-  std::array<double, 3> stored_per_voxel = {1, 1, 1};  ///< stored voxels along each axis of the volume in one voxel as made
-  LabelVolume volume;                                  ///< the labels on the grid on which they were made
+  /// stored voxels along each axis of the volume in one voxel as made
+  std::array<double, 3> stored_per_voxel = {1, 1, 1};
+  LabelVolume volume;  ///< the labels on the grid on which they were made
 };
 
 /// Recognises labels that are stored finer than they were made: blocks of equal voxels at any phase, as networks for

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <cstdio>
+#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -47,10 +47,12 @@ class Assigner {
     if (plan_ != nullptr) check_plan(*plan_, model_.labels, image_ != nullptr);
     else sets.placeholder_materials = true;
     std::map<Label, std::vector<std::int32_t>> elements;
-    for (std::size_t e = 0; e < model_.mesh.elements(); ++e) elements[model_.mesh.labels[e]].push_back(static_cast<std::int32_t>(e));
+    for (std::size_t e = 0; e < model_.mesh.elements(); ++e)
+      elements[model_.mesh.labels[e]].push_back(static_cast<std::int32_t>(e));
     for (const auto& [label, list] : elements) label_material(label, list);
     for (ShellSet& s : sets.shells) skin(s);
-    if (image_ != nullptr && !used_image_) report_.warnings.push_back({WarningCode::materials, "", "the image is not used: no label of the mesh has a law"});
+    if (image_ != nullptr && !used_image_)
+      report_.warnings.push_back({WarningCode::materials, "", "the image is not used: no label of the mesh has a law"});
     return std::move(report_);
   }
 
@@ -70,7 +72,9 @@ class Assigner {
   }
   Vec3 middle(std::int32_t t) const {
     const auto element = static_cast<std::size_t>(t);
-    if (model_.mesh.is_wedge(element)) return wedge_point(wedge_nodes(model_.mesh, element - model_.mesh.tets.size()), {1.0 / 3, 1.0 / 3, 0, 0}).position;
+    if (model_.mesh.is_wedge(element))
+      return wedge_point(wedge_nodes(model_.mesh, element - model_.mesh.tets.size()), {1.0 / 3, 1.0 / 3, 0, 0})
+          .position;
     return tet_point(model_.mesh, element, {0.25, 0.25, 0.25, 0.25}).position;
   }
 
@@ -88,13 +92,16 @@ class Assigner {
     row.poisson = m.poisson;
     SolverSets& sets = model_.sets;
     if (m.young_mpa) {
-      ElementMaterial material{"M_" + row.name, label, *m.young_mpa, m.poisson, m.density_t_mm3.value_or(0), tets, m.kind, m.constants};
+      ElementMaterial material{"M_" + row.name, label,      *m.young_mpa, m.poisson, m.density_t_mm3.value_or(0), tets,
+                               m.kind,          m.constants};
       if (m.axes) lay_axes(*m.axes, tets, sets);
       if (m.fibres) {
         const std::size_t unclear = lay_fibres(model_, label, *m.fibres, where(label));
         if (unclear > 0)
-          report_.warnings.push_back(warning_at(WarningCode::materials, "label " + std::to_string(label), "the way through the wall goes along the long axis in " + std::to_string(unclear) +
-                                     " elements, whose fibres take any direction across it"));
+          report_.warnings.push_back(warning_at(WarningCode::materials, "label " + std::to_string(label),
+                                                "the way through the wall goes along the long axis in " +
+                                                    std::to_string(unclear) +
+                                                    " elements, whose fibres take any direction across it"));
       }
       for (const std::int32_t t : tets) {
         sets.modulus_mpa[t] = material.young_mpa;
@@ -119,10 +126,15 @@ class Assigner {
     const InsideVoxels voxels(*image_, model_.mesh, tets, plan_->mapping.erode_px);
     row.voxels = voxels.used();
     if (voxels.used() == 0)
-      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label), "label " + std::to_string(label) + " holds no voxel's centre of the image: intensities are taken as they are around it"});
+      report_.warnings.push_back(
+          {WarningCode::materials, "label " + std::to_string(label),
+           "label " + std::to_string(label) +
+               " holds no voxel's centre of the image: intensities are taken as they are around it"});
     else if (voxels.eroded_px() < plan_->mapping.erode_px)
-      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label), "label " + std::to_string(label) + " is too thin for --erode " + std::to_string(plan_->mapping.erode_px) + ": " +
-                                 std::to_string(voxels.eroded_px()) + " is used"});
+      report_.warnings.push_back({WarningCode::materials, "label " + std::to_string(label),
+                                  "label " + std::to_string(label) + " is too thin for --erode " +
+                                      std::to_string(plan_->mapping.erode_px) + ": " +
+                                      std::to_string(voxels.eroded_px()) + " is used"});
     const double voxel_mm = *std::min_element(image_->spacing_mm.begin(), image_->spacing_mm.end());
     std::vector<ModulusLaw::Value> values = map_modulus(model_.mesh, tets, voxels, voxel_mm, law, plan_->mapping);
 
@@ -151,9 +163,11 @@ class Assigner {
     }
     if (bad > 0) {
       const Vec3 p = middle(tets[first_bad]);
-      fail_input("element " + std::to_string(tets[first_bad] + 1) + " would get a modulus of " + number(values[first_bad].young_mpa) + " MPa" +
+      fail_input("element " + std::to_string(tets[first_bad] + 1) + " would get a modulus of " +
+                     number(values[first_bad].young_mpa) + " MPa" +
                      (bad > 1 ? " (and " + std::to_string(bad - 1) + " more elements none above 0)" : ""),
-                 where(label) + ", at (" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")", "give the label a \"floor_MPa\"");
+                 where(label) + ", at (" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")",
+                 "give the label a \"floor_MPa\"");
     }
     row.clamped_low = static_cast<double>(low) / static_cast<double>(tets.size());
     row.clamped_high = static_cast<double>(high) / static_cast<double>(tets.size());
@@ -172,11 +186,14 @@ class Assigner {
       if (outside++ == 0) p = c;
     }
     if (outside == 0) return;
-    const Vec3 a = image_->world(-0.5, -0.5, -0.5), b = image_->world(image_->size[0] - 0.5, image_->size[1] - 0.5, image_->size[2] - 0.5);
+    const Vec3 a = image_->world(-0.5, -0.5, -0.5),
+               b = image_->world(image_->size[0] - 0.5, image_->size[1] - 0.5, image_->size[2] - 0.5);
     const auto at = [](Vec3 v) { return "(" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ")"; };
     fail_input(outside == tets.size() ? "the image does not overlap the mesh"
-                                      : std::to_string(outside) + " of " + std::to_string(tets.size()) + " elements lie outside of the image",
-               "label " + std::to_string(label) + " (" + name_of(label) + "), first at " + at(p) + " LPS; the image runs from " + at(a) + " to " + at(b),
+                                      : std::to_string(outside) + " of " + std::to_string(tets.size()) +
+                                            " elements lie outside of the image",
+               "label " + std::to_string(label) + " (" + name_of(label) + "), first at " + at(p) +
+                   " LPS; the image runs from " + at(a) + " to " + at(b),
                "give the image that the labels were drawn on, or one that covers them");
   }
 
@@ -184,7 +201,8 @@ class Assigner {
   void bin(Label label, const LabelMaterial& m, const std::vector<std::int32_t>& tets, MaterialRow& row) {
     const SolverSets& sets = model_.sets;
     std::vector<std::int32_t> order = tets;
-    std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return sets.modulus_mpa[a] < sets.modulus_mpa[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int32_t a, std::int32_t b) { return sets.modulus_mpa[a] < sets.modulus_mpa[b]; });
     const auto bins = static_cast<std::size_t>(plan_->mapping.bins);
     const double low = row.young_min_mpa, width = row.young_max_mpa - low;
     const Binning binning = plan_->mapping.binning;
@@ -193,8 +211,10 @@ class Assigner {
       if (binning == Binning::equal_count) return i * std::min(bins, order.size()) / order.size();
       if (width <= 0) return std::size_t{0};
       if (binning == Binning::logarithmic)
-        return std::min(bins - 1, static_cast<std::size_t>(std::log(sets.modulus_mpa[order[i]] / low) / ratio * static_cast<double>(bins)));
-      return std::min(bins - 1, static_cast<std::size_t>((sets.modulus_mpa[order[i]] - low) / width * static_cast<double>(bins)));
+        return std::min(bins - 1, static_cast<std::size_t>(std::log(sets.modulus_mpa[order[i]] / low) / ratio *
+                                                           static_cast<double>(bins)));
+      return std::min(bins - 1,
+                      static_cast<std::size_t>((sets.modulus_mpa[order[i]] - low) / width * static_cast<double>(bins)));
     };
     row.materials = 0;
     for (std::size_t i = 0; i < order.size();) {
@@ -214,8 +234,10 @@ class Assigner {
       material.density_t_mm3 /= volumes;
       if (binning == Binning::logarithmic) {  // the mean, but off from none by more than the middle of the bin would be
         const double first = sets.modulus_mpa[material.tets.front()], last = sets.modulus_mpa[material.tets.back()];
-        const double most = std::max(std::tanh(0.5 * ratio / static_cast<double>(bins)), (last - first) / (last + first));
-        material.young_mpa = std::clamp(material.young_mpa, (1 - most) * last, std::max((1 - most) * last, (1 + most) * first));
+        const double most =
+            std::max(std::tanh(0.5 * ratio / static_cast<double>(bins)), (last - first) / (last + first));
+        material.young_mpa =
+            std::clamp(material.young_mpa, (1 - most) * last, std::max((1 - most) * last, (1 + most) * first));
       }
       for (const std::int32_t t : material.tets)
         row.bin_error_rel = std::max(row.bin_error_rel, std::abs(material.young_mpa / sets.modulus_mpa[t] - 1));
@@ -264,10 +286,11 @@ void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, 
   for (const LabelInfo& l : labels) {
     const auto at = find(plan.labels, l.number, l.name);
     if (at == plan.labels.end())
-      fail_input("a label has no material", where_of(plan, l.number, l.name), "add it to \"labels\", or \"*\" for all others");
+      fail_input("a label has no material", where_of(plan, l.number, l.name),
+                 "add it to \"labels\", or \"*\" for all others");
     if (!at->second.young_mpa && !has_image)
-      fail_usage("label " + std::to_string(l.number) + " has a law, but there is no image to apply it to", "--materials " + plan.path,
-                 "give the intensities with --image CT, or a constant E_MPa");
+      fail_usage("label " + std::to_string(l.number) + " has a law, but there is no image to apply it to",
+                 "--materials " + plan.path, "give the intensities with --image CT, or a constant E_MPa");
   }
 }
 

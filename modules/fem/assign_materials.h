@@ -13,7 +13,8 @@ namespace stackmesh {
 struct MaterialRow {
   Label label = 0;
   std::string name, law;  ///< law "": constant
-  MaterialKind kind = MaterialKind::linear;  ///< of other kinds the moduli are those at small strain (orthotropic: along the fibre)
+  /// of other kinds the moduli are those at small strain (orthotropic: along the fibre)
+  MaterialKind kind = MaterialKind::linear;
   std::size_t elements = 0;
   double young_min_mpa = 0, young_mean_mpa = 0, young_max_mpa = 0;  ///< mean over the volume
   double poisson = 0, density_mean_t_mm3 = 0;
@@ -29,16 +30,17 @@ struct MaterialReport {
 };
 
 /// Checks a plan against the labels (with their solver names) before anything long begins.
-/// @throws Error(input): a law that names a label that is not there, a label that it leaves without material; Error(usage): a law of
-/// one of the labels without an image
+/// @throws Error(input): a law that names a label that is not there, a label that it leaves without material;
+/// Error(usage): a law of one of the labels without an image
 void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, bool has_image);
 
-/// Gives every element its material: constant by label, or from the image's intensities by a law. Only voxels inside the label
-/// (less a margin) speak for it. The modulus of each element is kept, and binned for decks that need a material for each.
-/// Skins get theirs. Without a plan, every label gets a placeholder.
+/// Gives every element its material: constant by label, or from the image's intensities by a law. Only voxels inside
+/// the label (less a margin) speak for it. The modulus of each element is kept, and binned for decks that need a
+/// material for each. Skins get theirs. Without a plan, every label gets a placeholder.
 /// @param plan nullptr: none; @param image nullptr: none; it lies in LPS, whatever the space of the mesh
-/// @throws Error(input): a label or skin without material, a law that names a label that is not there, an image that does not cover an
-/// element of a label with a law, an element whose modulus is not positive (it is named); Error(usage): a law without an image
+/// @throws Error(input): a label or skin without material, a law that names a label that is not there, an image that
+/// does not cover an element of a label with a law, an element whose modulus is not positive (it is named);
+/// Error(usage): a law without an image
 MaterialReport assign_materials(SolverModel& model, const MaterialPlan* plan, const IntensityVolume* image);
 
 }  // namespace stackmesh

@@ -6,7 +6,9 @@
 
 namespace stackmesh {
 
-std::array<std::int32_t, 6> outward_nodes(const TetMesh& mesh, TetFace face) { return outward_face_of(mesh, face); }
+std::array<std::int32_t, 6> outward_nodes(const TetMesh& mesh, TetFace face) {
+  return outward_face_of(mesh, face);
+}
 
 std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh) {
   const auto place = [](TetFace f) { return f.tet * 4 + f.face; };
@@ -23,7 +25,8 @@ std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh) {
       std::sort(s.key.begin(), s.key.end());
       sides.push_back(s);
     }
-  // Of wedges the two triangles; their other sides, and those of pyramids, lie within a layer. Pyramids' triangles there are counted, as tets stand on them.
+  // Of wedges the two triangles; their other sides, and those of pyramids, lie within a layer. Pyramids' triangles
+  // there are counted, as tets stand on them.
   for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
     const auto& v = mesh.wedges[w];
     const auto element = static_cast<std::int32_t>(mesh.tets.size() + w);
@@ -35,12 +38,14 @@ std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh) {
     for (int f = 0; f < 2; ++f) add_side(v[kWedgeFaces[f][0]], v[kWedgeFaces[f][1]], v[kWedgeFaces[f][2]], f);
     if (is_pyramid(v)) add_side(v[1], v[2], v[4], 2), add_side(v[2], v[0], v[3], 3);
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.at.tet < b.at.tet; });
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.at.tet < b.at.tet; });
 
   std::vector<BoundaryFace> faces;
   const auto add = [&](TetFace at, Label out) {
     if (at.face > 1 && mesh.is_wedge(static_cast<std::size_t>(at.tet)))
-      fail_input("a layer of wedges is open at its side", "element " + std::to_string(at.tet + 1), "give a mesh whose layers end in pyramids or tetrahedra");
+      fail_input("a layer of wedges is open at its side", "element " + std::to_string(at.tet + 1),
+                 "give a mesh whose layers end in pyramids or tetrahedra");
     BoundaryFace face;
     face.at = at;
     face.in = mesh.labels[at.tet];
@@ -58,8 +63,10 @@ std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh) {
     std::size_t end = i + 1;
     while (end < sides.size() && sides[end].key == sides[i].key) ++end;
     if (end - i > 2)
-      fail_input("more than two elements share a face", "elements " + std::to_string(sides[i].at.tet + 1) + ", " +
-                 std::to_string(sides[i + 1].at.tet + 1) + " and " + std::to_string(sides[i + 2].at.tet + 1), "give a conforming mesh");
+      fail_input("more than two elements share a face",
+                 "elements " + std::to_string(sides[i].at.tet + 1) + ", " + std::to_string(sides[i + 1].at.tet + 1) +
+                     " and " + std::to_string(sides[i + 2].at.tet + 1),
+                 "give a conforming mesh");
     if (end - i == 1) {
       add(sides[i].at, 0);
     } else if (mesh.labels[sides[i].at.tet] != mesh.labels[sides[i + 1].at.tet]) {
@@ -70,10 +77,12 @@ std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh) {
     }
     i = end;
   }
-  std::sort(faces.begin(), faces.end(), [&](const BoundaryFace& a, const BoundaryFace& b) { return place(a.at) < place(b.at); });
+  std::sort(faces.begin(), faces.end(),
+            [&](const BoundaryFace& a, const BoundaryFace& b) { return place(a.at) < place(b.at); });
   for (BoundaryFace& f : faces) {
     if (f.twin < 0) continue;
-    const auto at = std::lower_bound(faces.begin(), faces.end(), f.twin, [&](const BoundaryFace& a, std::int32_t p) { return place(a.at) < p; });
+    const auto at = std::lower_bound(faces.begin(), faces.end(), f.twin,
+                                     [&](const BoundaryFace& a, std::int32_t p) { return place(a.at) < p; });
     f.twin = static_cast<std::int32_t>(at - faces.begin());
   }
   return faces;

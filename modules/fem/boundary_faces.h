@@ -10,11 +10,11 @@ namespace stackmesh {
 /// A face of a tet that has another label, or nothing, on its other side.
 struct BoundaryFace {
   TetFace at;
-  Label in = 0, out = 0;               ///< of its tet, and on the other side
-  Label behind = 0;                    ///< where that is nothing: the void there, 0 for the background
-  std::array<std::int32_t, 3> v{};     ///< corners, seen from outside anticlockwise
-  std::int32_t twin = -1;              ///< the same face seen from the other side; -1: background
-  Vec3 normal, centre;                 ///< unit, out of its tet; of the plane triangle
+  Label in = 0, out = 0;            ///< of its tet, and on the other side
+  Label behind = 0;                 ///< where that is nothing: the void there, 0 for the background
+  std::array<std::int32_t, 3> v{};  ///< corners, seen from outside anticlockwise
+  std::int32_t twin = -1;           ///< the same face seen from the other side; -1: background
+  Vec3 normal, centre;              ///< unit, out of its tet; of the plane triangle
   double area_mm2 = 0;
 };
 

@@ -18,7 +18,8 @@ struct Border {
 };
 
 /// Edges that exactly two of the faces share.
-std::vector<Border> borders(const std::vector<BoundaryFace>& all, const Patch& faces, const std::vector<char>& wall, double sharp_deg) {
+std::vector<Border> borders(const std::vector<BoundaryFace>& all, const Patch& faces, const std::vector<char>& wall,
+                            double sharp_deg) {
   struct Edge {
     std::int32_t low, high, face;
   };
@@ -50,8 +51,8 @@ std::vector<Border> borders(const std::vector<BoundaryFace>& all, const Patch& f
 
 }  // namespace
 
-std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, const Patch& faces, const std::vector<char>& wall,
-                                        const PatchOptions& options) {
+std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, const Patch& faces,
+                                        const std::vector<char>& wall, const PatchOptions& options) {
   const std::vector<Border> edges = borders(all, faces, wall, options.sharp_deg);
   const auto sharp = std::count_if(edges.begin(), edges.end(), [](const Border& b) { return b.sharp; });
   const bool staircase = static_cast<std::size_t>(sharp) * 4 > edges.size();
@@ -76,7 +77,9 @@ std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, co
       neighbours[q][p] += b.length;
     }
     for (const auto& [p, next] : neighbours)
-      if (of_patch[p] < options.least_share * of_component[components.find(p)] && (smallest < 0 || of_patch[p] < of_patch[smallest])) smallest = p;
+      if (of_patch[p] < options.least_share * of_component[components.find(p)] &&
+          (smallest < 0 || of_patch[p] < of_patch[smallest]))
+        smallest = p;
     if (smallest < 0) break;
     std::int32_t best = -1;
     double longest = -1;
@@ -90,7 +93,8 @@ std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, co
     of_patch[patches.find(best)] = area;
   }
   std::map<std::int32_t, Patch> by_root;
-  for (std::size_t i = 0; i < faces.size(); ++i) by_root[patches.find(static_cast<std::int32_t>(i))].push_back(faces[i]);
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    by_root[patches.find(static_cast<std::int32_t>(i))].push_back(faces[i]);
   std::vector<Patch> result;
   for (auto& [root, patch] : by_root) result.push_back(std::move(patch));
   const auto area_of = [&](const Patch& p) {
@@ -98,11 +102,13 @@ std::vector<Patch> split_at_sharp_edges(const std::vector<BoundaryFace>& all, co
     for (const std::int32_t f : p) area += all[f].area_mm2;
     return area;
   };
-  std::stable_sort(result.begin(), result.end(), [&](const Patch& a, const Patch& b) { return area_of(a) > area_of(b); });
+  std::stable_sort(result.begin(), result.end(),
+                   [&](const Patch& a, const Patch& b) { return area_of(a) > area_of(b); });
   return result;
 }
 
-void join_islands(const std::vector<BoundaryFace>& all, const Patch& surface, double least_share, std::vector<Patch>& patches) {
+void join_islands(const std::vector<BoundaryFace>& all, const Patch& surface, double least_share,
+                  std::vector<Patch>& patches) {
   std::int32_t points = 0;
   for (const std::int32_t f : surface) points = std::max({points, all[f].v[0] + 1, all[f].v[1] + 1, all[f].v[2] + 1});
   DisjointSets shells(static_cast<std::size_t>(points));

@@ -28,7 +28,9 @@ std::string text_of(Vec3 p) {
   return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")";
 }
 
-Vec3 axis_of(int axis) { return {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0}; }
+Vec3 axis_of(int axis) {
+  return {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0};
+}
 
 /// Wedges hang together by their sides of four corners; their triangles are told to `visit`.
 template <class Visit>
@@ -52,8 +54,8 @@ void join_wedges(const TetMesh& mesh, DisjointSets& joined, Visit visit) {
 struct Bodies {
   std::vector<std::int32_t> of_tet;
   std::vector<Body> list;
-  std::vector<double> size_mm;                          // half the diagonal of its box
-  std::vector<std::vector<std::int32_t>> of_node;       // the bodies at a node, ascending
+  std::vector<double> size_mm;                     // half the diagonal of its box
+  std::vector<std::vector<std::int32_t>> of_node;  // the bodies at a node, ascending
 
   explicit Bodies(const SolverModel& model) {
     const TetMesh& mesh = model.mesh;
@@ -74,7 +76,8 @@ struct Bodies {
       std::sort(key.begin(), key.end());
       sides.push_back({key, element});
     });
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.tet < b.tet; });
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.tet < b.tet; });
     for (std::size_t i = 0; i + 1 < sides.size(); ++i)
       if (sides[i].key == sides[i + 1].key) joined.join(sides[i].tet, sides[i + 1].tet);
     of_tet.assign(mesh.elements(), 0);
@@ -83,7 +86,8 @@ struct Bodies {
     std::vector<std::array<Vec3, 2>> boxes;
     of_node.resize(mesh.points.size());
     for (std::size_t t = 0; t < mesh.elements(); ++t) {
-      const auto [at, fresh] = number_of.insert({joined.find(static_cast<std::int32_t>(t)), static_cast<std::int32_t>(list.size())});
+      const auto [at, fresh] =
+          number_of.insert({joined.find(static_cast<std::int32_t>(t)), static_cast<std::int32_t>(list.size())});
       const std::int32_t b = of_tet[t] = at->second;
       const std::vector<std::array<std::int32_t, 4>> parts = tets_of_element(mesh, t);
       if (fresh) {
@@ -95,7 +99,8 @@ struct Bodies {
       ++body.tets;
       for (const auto& v : parts) {
         const Vec3 o = mesh.points[v[0]];
-        const double volume = std::abs(dot(cross(mesh.points[v[1]] - o, mesh.points[v[2]] - o), mesh.points[v[3]] - o)) / 6;
+        const double volume =
+            std::abs(dot(cross(mesh.points[v[1]] - o, mesh.points[v[2]] - o), mesh.points[v[3]] - o)) / 6;
         body.volume_mm3 += volume;
         labels[b][mesh.labels[t]] += volume;
         for (const std::int32_t k : v) body.centre = body.centre + (0.25 * volume) * mesh.points[k];
@@ -136,8 +141,10 @@ struct Mover {
 
 class Checker {
  public:
-  Checker(const SolverModel& model, const std::string& path) : model_(model), sets_(model.sets), path_(path), bodies_(model) {
-    for (std::size_t b = 0; b < bodies_.list.size(); ++b) movers_.push_back({bodies_.list[b].centre, bodies_.size_mm[b]});
+  Checker(const SolverModel& model, const std::string& path)
+      : model_(model), sets_(model.sets), path_(path), bodies_(model) {
+    for (std::size_t b = 0; b < bodies_.list.size(); ++b)
+      movers_.push_back({bodies_.list[b].centre, bodies_.size_mm[b]});
     for (const RigidPoint& p : sets_.points) {
       double size = 1e-12;
       for (const std::int32_t v : nodes_of(p.set)) size = std::max(size, norm(model_.mesh.points[v] - p.at_mm));
@@ -151,7 +158,8 @@ class Checker {
   }
 
  private:
-  /// A velocity of one mover at a place along a direction, with a sign: a row of the constraints has one, or two of opposite signs.
+  /// A velocity of one mover at a place along a direction, with a sign: a row of the constraints has one, or two of
+  /// opposite signs.
   struct Term {
     std::int32_t mover;
     Vec3 at, along;
@@ -178,16 +186,19 @@ class Checker {
     const std::vector<Vec3>& points = model_.mesh.points;
     for (std::size_t v = 0; v < points.size(); ++v)
       for (std::size_t k = 1; k < bodies_.of_node[v].size(); ++k)
-        for (int axis = 0; axis < 3; ++axis) join(rows, bodies_.of_node[v][0], bodies_.of_node[v][k], points[v], axis_of(axis));
+        for (int axis = 0; axis < 3; ++axis)
+          join(rows, bodies_.of_node[v][0], bodies_.of_node[v][k], points[v], axis_of(axis));
     for (const Tie& t : sets_.ties)
       for (const Tie::Node& n : t.nodes)
         for (int axis = 0; axis < 3; ++axis)
-          if (n.axes[axis]) join(rows, bodies_.of_node[n.node][0], bodies_.of_node[n.followed][0], points[n.node], axis_of(axis));
+          if (n.axes[axis])
+            join(rows, bodies_.of_node[n.node][0], bodies_.of_node[n.followed][0], points[n.node], axis_of(axis));
     for (const SpringSet& s : sets_.springs)
       for (const GroundSpring& g : s.springs) hold(rows, g.node, g.direction);
     for (std::size_t p = 0; p < sets_.points.size(); ++p)
       for (const std::int32_t v : nodes_of(sets_.points[p].set))
-        for (int axis = 0; axis < 3; ++axis) join(rows, bodies_.of_node[v][0], point_mover(static_cast<std::int32_t>(p)), points[v], axis_of(axis));
+        for (int axis = 0; axis < 3; ++axis)
+          join(rows, bodies_.of_node[v][0], point_mover(static_cast<std::int32_t>(p)), points[v], axis_of(axis));
     for (const SurfacePair& pair : sets_.pairs)
       if (pair.contact == Contact::contact) contact(pair, rows);
     return rows;
@@ -202,7 +213,8 @@ class Checker {
       if (s.name != pair.primary) continue;
       for (const TetFace f : s.faces) {
         const auto v = outward_nodes(model_.mesh, f);
-        const Vec3 n = cross(model_.mesh.points[v[1]] - model_.mesh.points[v[0]], model_.mesh.points[v[2]] - model_.mesh.points[v[0]]);
+        const Vec3 n = cross(model_.mesh.points[v[1]] - model_.mesh.points[v[0]],
+                             model_.mesh.points[v[2]] - model_.mesh.points[v[0]]);
         for (const std::int32_t k : v)
           if (k >= 0) normals[k] = normals[k] + n;
       }
@@ -213,8 +225,7 @@ class Checker {
       const std::int32_t a = bodies_.of_node[v][0], b = bodies_.of_node[twin->second][0];
       if (pair.friction > 0)
         for (int axis = 0; axis < 3; ++axis) join(rows, a, b, model_.mesh.points[v], axis_of(axis));
-      else
-        join(rows, a, b, model_.mesh.points[v], (1 / norm(n)) * n);
+      else join(rows, a, b, model_.mesh.points[v], (1 / norm(n)) * n);
     }
   }
 
@@ -230,7 +241,8 @@ class Checker {
       for (int axis = 0; axis < 3; ++axis) {
         if (s.value[axis]) rows.push_back({{point_mover(s.point), m.centre, axis_of(axis)}});
         if (!s.value[axis + 3]) continue;
-        const Vec3 arm = m.size_mm * axis_of((axis + 1) % 3), along = axis_of((axis + 2) % 3);  // the place at the arm goes along by the rotation
+        // the place at the arm goes along by the rotation
+        const Vec3 arm = m.size_mm * axis_of((axis + 1) % 3), along = axis_of((axis + 2) % 3);
         rows.push_back({{point_mover(s.point), m.centre + arm, along}, {point_mover(s.point), m.centre, -1.0 * along}});
       }
     }
@@ -238,7 +250,8 @@ class Checker {
     for (const Row& r : rows)
       for (const Term& t : r) groups.join(r[0].mover, t.mover);
     std::map<std::int32_t, std::vector<std::int32_t>> members;
-    for (std::size_t m = 0; m < movers_.size(); ++m) members[groups.find(static_cast<std::int32_t>(m))].push_back(static_cast<std::int32_t>(m));
+    for (std::size_t m = 0; m < movers_.size(); ++m)
+      members[groups.find(static_cast<std::int32_t>(m))].push_back(static_cast<std::int32_t>(m));
     std::map<std::int32_t, std::vector<const Row*>> rows_of;
     for (const Row& r : rows) rows_of[groups.find(r[0].mover)].push_back(&r);
     std::map<std::int32_t, std::string> loose;  // body, and how it can move
@@ -255,7 +268,8 @@ class Checker {
   }
 
   /// The motions that no row hinders: zero pivots of the rows' normal matrix.
-  void find_motions(const std::vector<std::int32_t>& list, const std::vector<const Row*>& rows, std::map<std::int32_t, std::string>& loose) const {
+  void find_motions(const std::vector<std::int32_t>& list, const std::vector<const Row*>& rows,
+                    std::map<std::int32_t, std::string>& loose) const {
     const std::size_t n = 6 * list.size();
     std::map<std::int32_t, std::size_t> place;
     for (std::size_t i = 0; i < list.size(); ++i) place[list[i]] = 6 * i;
@@ -307,7 +321,8 @@ class Checker {
         const double* const m = &motion[place[mover]];
         const Vec3 shift = {m[0], m[1], m[2]}, turn = {m[3], m[4], m[5]};
         if (std::max(norm(shift), norm(turn)) < 1e-3 * most) continue;
-        loose.insert({mover, norm(turn) > 1e-6 * norm(shift) ? "turn about " + text_of((1 / norm(turn)) * turn) : "move along " + text_of((1 / norm(shift)) * shift)});
+        loose.insert({mover, norm(turn) > 1e-6 * norm(shift) ? "turn about " + text_of((1 / norm(turn)) * turn)
+                                                             : "move along " + text_of((1 / norm(shift)) * shift)});
       }
     }
   }
@@ -338,8 +353,9 @@ class Checker {
     constexpr std::size_t kMost = 5;
     for (std::size_t i = 0; i < std::min(order.size(), kMost); ++i) {
       const Body& b = bodies_.list[order[i]];
-      pieces += (i > 0 ? "; " : "") + std::string("piece of label ") + std::to_string(b.label) + " (" + b.name + ") of " + std::to_string(b.tets) + " elements and " +
-                number(b.volume_mm3) + " mm3 at " + text_of(b.centre) + (loaded.count(order[i]) > 0 ? ", loaded" : "") + ": it can " + loose.at(order[i]);
+      pieces += (i > 0 ? "; " : "") + std::string("piece of label ") + std::to_string(b.label) + " (" + b.name +
+                ") of " + std::to_string(b.tets) + " elements and " + number(b.volume_mm3) + " mm3 at " +
+                text_of(b.centre) + (loaded.count(order[i]) > 0 ? ", loaded" : "") + ": it can " + loose.at(order[i]);
     }
     if (order.size() > kMost) pieces += "; and " + std::to_string(order.size() - kMost) + " more";
     const bool whole = bodies_.list.size() == 1;
@@ -348,7 +364,8 @@ class Checker {
                            " bodies are not supported against rigid motion, so the deck would be singular",
                path_ + ", load_case, " + step.name + ", " + pieces,
                whole ? "hold it along more axes or on more faces (\"fixed\", \"springs\")"
-                     : "leave loose pieces out (--keep-largest, --min-piece), or hold each of them (\"fixed\", \"springs\"); contact without friction "
+                     : "leave loose pieces out (--keep-largest, --min-piece), or hold each of them (\"fixed\", "
+                       "\"springs\"); contact without friction "
                        "holds nothing along its faces");
   }
 
@@ -368,7 +385,8 @@ std::vector<Body> bodies_of(const SolverModel& model) {
 }
 
 void check_supports(const SolverModel& model, const std::string& path) {
-  const bool any = std::any_of(model.sets.steps.begin(), model.sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
+  const bool any = std::any_of(model.sets.steps.begin(), model.sets.steps.end(),
+                               [](const LoadStep& s) { return s.analysis == Analysis::statics; });
   if (any) Checker(model, path).run();
 }
 

@@ -16,7 +16,8 @@ Limit richardson(const std::vector<double>& v, double order) {
   const double step = v[n - 1] - v[n - 2];
   if (n >= 3) {
     const double before = v[n - 2] - v[n - 3];
-    order = step != 0 && before / step > 1 ? std::min(4.0, std::log2(before / step)) : 0.5;  // it does not converge yet: little is trusted
+    // it does not converge yet: little is trusted
+    order = step != 0 && before / step > 1 ? std::min(4.0, std::log2(before / step)) : 0.5;
     order = std::max(0.5, order);
   }
   return {v[n - 1] + step / (std::pow(2, order) - 1), order};
@@ -46,9 +47,11 @@ Accuracy estimate_error(const std::vector<StressMeasure>& measures, int order) {
     const Limit stress = richardson(row.mises_rms_mpa, order), moved = richardson(row.displacement_max_mm, order);
     row.mises_extrapolated_mpa = stress.value;
     row.order = stress.order;
-    const double scale = std::max(std::abs(stress.value), 0.05 * last.mises_rms_mpa), move_scale = std::max(std::abs(moved.value), 0.05 * largest_move);
+    const double scale = std::max(std::abs(stress.value), 0.05 * last.mises_rms_mpa),
+                 move_scale = std::max(std::abs(moved.value), 0.05 * largest_move);
     row.error_rel = scale > 0 ? std::abs(stress.value - row.mises_rms_mpa.back()) / scale : 0;
-    row.displacement_error_rel = move_scale > 0 ? std::abs(moved.value - row.displacement_max_mm.back()) / move_scale : 0;
+    row.displacement_error_rel =
+        move_scale > 0 ? std::abs(moved.value - row.displacement_max_mm.back()) / move_scale : 0;
     const double error = std::max(row.error_rel, row.displacement_error_rel);
     if (!row.held && error >= out.error_rel) {
       out.error_rel = error;

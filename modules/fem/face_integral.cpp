@@ -13,12 +13,19 @@ struct RulePoint {
 std::vector<RulePoint> face_rule() {
   constexpr double a = 0.0597158717897698, b = 0.4701420641051151, w = 0.1323941527885062;
   constexpr double c = 0.7974269853530873, d = 0.1012865073234563, v = 0.1259391805448271;
-  return {{{1.0 / 3, 1.0 / 3, 1.0 / 3}, 0.225}, {{a, b, b}, w}, {{b, a, b}, w}, {{b, b, a}, w}, {{c, d, d}, v}, {{d, c, d}, v}, {{d, d, c}, v}};
+  return {{{1.0 / 3, 1.0 / 3, 1.0 / 3}, 0.225},
+          {{a, b, b}, w},
+          {{b, a, b}, w},
+          {{b, b, a}, w},
+          {{c, d, d}, v},
+          {{d, c, d}, v},
+          {{d, d, c}, v}};
 }
 
 }  // namespace
 
-void visit_face_points(const TetMesh& mesh, const std::vector<TetFace>& faces, const std::function<void(const FacePoint&)>& visit) {
+void visit_face_points(const TetMesh& mesh, const std::vector<TetFace>& faces,
+                       const std::function<void(const FacePoint&)>& visit) {
   const std::vector<RulePoint> rule = face_rule();
   const int count = mesh.mid.empty() ? 3 : 6;
   for (const TetFace face : faces) {

@@ -12,7 +12,8 @@ constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 
 
 }  // namespace
 
-InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, const std::vector<std::int32_t>& tets, int erode_px)
+InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, const std::vector<std::int32_t>& tets,
+                           int erode_px)
     : image_(image), space_(mesh.space) {
   Vec3 low{1e300, 1e300, 1e300}, high = -1.0 * low;
   const auto extend = [&](std::int32_t v) {
@@ -33,7 +34,8 @@ InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, co
   value_.resize(count);
   for (int k = 0; k < size_[2]; ++k)
     for (int j = 0; j < size_[1]; ++j)
-      for (int i = 0; i < size_[0]; ++i) value_[at(i, j, k)] = image.values[image.index(low_[0] + i, low_[1] + j, low_[2] + k)];
+      for (int i = 0; i < size_[0]; ++i)
+        value_[at(i, j, k)] = image.values[image.index(low_[0] + i, low_[1] + j, low_[2] + k)];
   mark_inside(mesh, tets);
   erode(erode_px);
   used_ = static_cast<std::size_t>(std::count(state_.begin(), state_.end(), 1));
@@ -85,7 +87,8 @@ void InsideVoxels::erode(int steps) {
           if (state_[at(i, j, k)] == 0) continue;
           for (const auto& d : kFaces) {
             const int x = i + d[0], y = j + d[1], z = k + d[2];
-            if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2]) continue;  // the image's own border: a cut
+            // the image's own border: a cut
+            if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2]) continue;
             if (state_[at(x, y, z)] == 0) next[at(i, j, k)] = 0;
           }
           any = any || next[at(i, j, k)] != 0;
@@ -123,7 +126,8 @@ void InsideVoxels::continue_outward() {
       double sum = 0, weights = 0;
       visit_neighbours(i, j, k, [&, ci = i, cj = j, ck = k](int x, int y, int z) {
         if (state_[at(x, y, z)] == 0) return;
-        const Vec3 d = {(x - ci) * image_.spacing_mm[0], (y - cj) * image_.spacing_mm[1], (z - ck) * image_.spacing_mm[2]};
+        const Vec3 d = {(x - ci) * image_.spacing_mm[0], (y - cj) * image_.spacing_mm[1],
+                        (z - ck) * image_.spacing_mm[2]};
         sum += value_[at(x, y, z)] / norm(d);
         weights += 1 / norm(d);
       });
@@ -151,7 +155,9 @@ double InsideVoxels::sample(Vec3 p) const {
     to[d] = std::min(from[d] + 1, size_[d] - 1);
     t[d] = x - from[d];
   }
-  const auto along_x = [&](int j, int k) { return (1 - t[0]) * value_[at(from[0], j, k)] + t[0] * value_[at(to[0], j, k)]; };
+  const auto along_x = [&](int j, int k) {
+    return (1 - t[0]) * value_[at(from[0], j, k)] + t[0] * value_[at(to[0], j, k)];
+  };
   const auto along_y = [&](int k) { return (1 - t[1]) * along_x(from[1], k) + t[1] * along_x(to[1], k); };
   return (1 - t[2]) * along_y(from[2]) + t[2] * along_y(to[2]);
 }

@@ -10,17 +10,19 @@
 
 namespace stackmesh {
 
-/// The intensities of one label: those of voxels whose centres lie in its tets (and not near its border), continued outward from
-/// there, so that no neighbour's tissue is mixed in.
+/// The intensities of one label: those of voxels whose centres lie in its tets (and not near its border), continued
+/// outward from there, so that no neighbour's tissue is mixed in.
 class InsideVoxels {
  public:
   /// @param tets of the label; positions are turned from the space of the mesh to that of the image, LPS
-  /// @param erode_px steps from voxel to face neighbour that are taken off the label's border; fewer where nothing would be left
+  /// @param erode_px steps from voxel to face neighbour that are taken off the label's border; fewer where nothing
+  /// would be left
   InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, const std::vector<std::int32_t>& tets, int erode_px);
 
   /// The intensity at a position in the label (mm, in the space of the mesh).
   double sample(Vec3 p) const;
-  std::size_t used() const { return used_; }          ///< voxels; 0: the label holds no voxel's centre, the image is sampled as it is
+  /// voxels; 0: the label holds no voxel's centre, the image is sampled as it is
+  std::size_t used() const { return used_; }
   int eroded_px() const { return eroded_; }
 
  private:
@@ -31,7 +33,7 @@ class InsideVoxels {
   void continue_outward();
 
   const IntensityVolume& image_;
-  Space space_;  // of the mesh
+  Space space_;                        // of the mesh
   std::array<int, 3> low_{}, size_{};  // the box of voxels around the label
   std::vector<std::uint8_t> state_;    // 0 outside, 1 has a value
   std::vector<float> value_;

@@ -43,7 +43,8 @@ class Joiner {
       if (pair == nullptr)
         fail_input("the law names parts that do not touch, or are not there", where,
                    known.empty() ? "give the parts with --parts A=1,3 B=2,4" : "these touch: " + known.substr(0, 300));
-      if (!done.insert(pair->name).second) fail_input("the law names a pair of parts twice", where, "name each pair once");
+      if (!done.insert(pair->name).second)
+        fail_input("the law names a pair of parts twice", where, "name each pair once");
       if (law.parts != pair->parts) {  // the first of the law is the primary one
         std::swap(pair->parts[0], pair->parts[1]);
         std::swap(pair->primary, pair->secondary);
@@ -70,7 +71,8 @@ class Joiner {
       for (const TetFace f : faces.faces) {
         sum += model_.sets.modulus_mpa[f.tet];
         const auto v = outward_nodes(model_.mesh, f);
-        for (int k = 0; k < 3; ++k, ++count) edges += norm(model_.mesh.points[v[k]] - model_.mesh.points[v[(k + 1) % 3]]);
+        for (int k = 0; k < 3; ++k, ++count)
+          edges += norm(model_.mesh.points[v[k]] - model_.mesh.points[v[(k + 1) % 3]]);
       }
       const double mean = sum / static_cast<double>(faces.faces.size());
       softer = softer == 0 ? mean : std::min(softer, mean);
@@ -78,19 +80,21 @@ class Joiner {
     return 50 * softer / (edges / static_cast<double>(count));
   }
 
-  /// Soft springs along the axes on all corners of those parts of a pair that have no support: they catch what contact does not hold
-  /// before it closes, or where it slides.
+  /// Soft springs along the axes on all corners of those parts of a pair that have no support: they catch what contact
+  /// does not hold before it closes, or where it slides.
   void stabilise(const SurfacePair& p) {
     double area = 0;
     for (const TetFace f : surface(p.primary).faces) {
       const auto v = outward_nodes(model_.mesh, f);
-      area += 0.5 * norm(cross(model_.mesh.points[v[1]] - model_.mesh.points[v[0]], model_.mesh.points[v[2]] - model_.mesh.points[v[0]]));
+      area += 0.5 * norm(cross(model_.mesh.points[v[1]] - model_.mesh.points[v[0]],
+                               model_.mesh.points[v[2]] - model_.mesh.points[v[0]]));
     }
     const std::map<std::int32_t, int> held = supported_axes();
     const SolverSets& sets = model_.sets;
     for (const std::string& name : p.parts) {
       const auto part = static_cast<int>(std::find(sets.parts.begin(), sets.parts.end(), name) - sets.parts.begin());
-      const bool is_held = std::any_of(held.begin(), held.end(), [&](const auto& h) { return sets.part_of_node[h.first] == part; });
+      const bool is_held =
+          std::any_of(held.begin(), held.end(), [&](const auto& h) { return sets.part_of_node[h.first] == part; });
       if (is_held) continue;
       std::set<std::int32_t> corners;
       for (std::size_t e = 0; e < model_.mesh.elements(); ++e)
@@ -101,7 +105,8 @@ class Joiner {
       springs.name = unique("stabilise_" + name);
       const double each = p.stabilise * p.stiffness_mpa_mm * area / static_cast<double>(corners.size());
       for (const std::int32_t v : corners)
-        for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) springs.springs.push_back({v, axis, each});
+        for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+          springs.springs.push_back({v, axis, each});
       model_.sets.springs.push_back(std::move(springs));
     }
   }
@@ -135,20 +140,24 @@ class Joiner {
       for (const auto& [v, bits] : axes) {
         const auto at = here.find(v);
         if ((at == here.end() ? 0 : at->second) != bits && is_follower_.count(v) > 0)
-          fail_input("a node of tied parts is held in one step and free in another", o_.path + ", load_case, " + step.name + ", node " + std::to_string(v + 1),
+          fail_input("a node of tied parts is held in one step and free in another",
+                     o_.path + ", load_case, " + step.name + ", node " + std::to_string(v + 1),
                      "hold the same sets in all steps where they reach tied faces, or choose sets away from them");
       }
     }
     for (const std::int32_t v : is_tied_)
       if (bound.count(v) > 0)
-        fail_input("a node of tied parts is bound to a rigid point", o_.path + ", load_case, points, node " + std::to_string(v + 1),
+        fail_input("a node of tied parts is bound to a rigid point",
+                   o_.path + ", load_case, points, node " + std::to_string(v + 1),
                    "choose a set away from the tied faces");
   }
 
-  /// What two parts do to each other; those without a common face, that touch in points or along edges at most, do as all others.
+  /// What two parts do to each other; those without a common face, that touch in points or along edges at most, do as
+  /// all others.
   Contact between(int a, int b) const {
     for (const SurfacePair& p : model_.sets.pairs)
-      if ((p.parts[0] == model_.sets.parts[a] && p.parts[1] == model_.sets.parts[b]) || (p.parts[0] == model_.sets.parts[b] && p.parts[1] == model_.sets.parts[a]))
+      if ((p.parts[0] == model_.sets.parts[a] && p.parts[1] == model_.sets.parts[b]) ||
+          (p.parts[0] == model_.sets.parts[b] && p.parts[1] == model_.sets.parts[a]))
         return p.contact;
     return o_.others;
   }
@@ -156,13 +165,17 @@ class Joiner {
   void tie() {
     SolverSets& sets = model_.sets;
     std::map<std::int32_t, std::vector<std::int32_t>> places;  // original node to its copies
-    for (std::size_t v = 0; v < sets.original.size(); ++v) places[sets.original[v]].push_back(static_cast<std::int32_t>(v));
+    for (std::size_t v = 0; v < sets.original.size(); ++v)
+      places[sets.original[v]].push_back(static_cast<std::int32_t>(v));
     const std::map<std::int32_t, int> axes = supported_axes();
-    const auto held = [&](std::int32_t v) { return axes.count(v) > 0 ? __builtin_popcount(static_cast<unsigned>(axes.at(v))) : 0; };
+    const auto held = [&](std::int32_t v) {
+      return axes.count(v) > 0 ? __builtin_popcount(static_cast<unsigned>(axes.at(v))) : 0;
+    };
     const std::size_t parts = sets.parts.size();
     std::vector<char> tied(parts * parts, 0);
     for (std::size_t a = 0; a < parts; ++a)
-      for (std::size_t b = 0; b < parts; ++b) tied[a * parts + b] = a != b && between(static_cast<int>(a), static_cast<int>(b)) == Contact::tie;
+      for (std::size_t b = 0; b < parts; ++b)
+        tied[a * parts + b] = a != b && between(static_cast<int>(a), static_cast<int>(b)) == Contact::tie;
     std::map<std::pair<int, int>, Tie> ties;  // part that follows, part that is followed
     for (auto& [original, copies] : places) {
       std::stable_sort(copies.begin(), copies.end(), [&](std::int32_t a, std::int32_t b) { return held(a) > held(b); });
@@ -181,19 +194,23 @@ class Joiner {
         is_follower_.insert(group.begin() + 1, group.end());
         for (std::size_t i = 1; i < group.size(); ++i) {
           Tie::Node node{group[i], group[0], {}};
-          for (int axis = 0; axis < 3; ++axis) node.axes[axis] = axes.count(node.node) == 0 || (axes.at(node.node) >> axis & 1) == 0;
-          if (held(node.node) < 3) ties[{sets.part_of_node[node.node], sets.part_of_node[node.followed]}].nodes.push_back(node);
+          for (int axis = 0; axis < 3; ++axis)
+            node.axes[axis] = axes.count(node.node) == 0 || (axes.at(node.node) >> axis & 1) == 0;
+          if (held(node.node) < 3)
+            ties[{sets.part_of_node[node.node], sets.part_of_node[node.followed]}].nodes.push_back(node);
         }
         copies = std::move(rest);
       }
     }
     check_ties(axes);
     for (auto& [ab, tie] : ties) {
-      std::sort(tie.nodes.begin(), tie.nodes.end(), [](const Tie::Node& a, const Tie::Node& b) { return a.node < b.node; });
+      std::sort(tie.nodes.begin(), tie.nodes.end(),
+                [](const Tie::Node& a, const Tie::Node& b) { return a.node < b.node; });
       tie.name = unique("tie_" + sets.parts[ab.first] + "_to_" + sets.parts[ab.second]);
       NodeSet set;
       set.name = tie.name;
-      set.note = "nodes of part " + sets.parts[ab.first] + " that follow those at the same place of part " + sets.parts[ab.second];
+      set.note = "nodes of part " + sets.parts[ab.first] + " that follow those at the same place of part " +
+                 sets.parts[ab.second];
       for (const Tie::Node& n : tie.nodes) set.nodes.push_back(n.node);
       sets.node_sets.push_back(std::move(set));
       sets.ties.push_back(std::move(tie));
@@ -203,7 +220,8 @@ class Joiner {
   std::string unique(const std::string& name) const {
     const auto taken = [&](const std::string& n) {
       const auto same = [&](const auto& s) { return lower_case(s.name) == lower_case(n); };
-      return std::any_of(model_.sets.node_sets.begin(), model_.sets.node_sets.end(), same) || std::any_of(model_.sets.springs.begin(), model_.sets.springs.end(), same);
+      return std::any_of(model_.sets.node_sets.begin(), model_.sets.node_sets.end(), same) ||
+             std::any_of(model_.sets.springs.begin(), model_.sets.springs.end(), same);
     };
     std::string result = name;
     for (int n = 2; taken(result); ++n) result = name + "_" + std::to_string(n);
@@ -217,6 +235,8 @@ class Joiner {
 
 }  // namespace
 
-void join_parts(SolverModel& model, const JoinOptions& options) { Joiner(model, options).run(); }
+void join_parts(SolverModel& model, const JoinOptions& options) {
+  Joiner(model, options).run();
+}
 
 }  // namespace stackmesh

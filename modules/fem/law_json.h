@@ -30,7 +30,8 @@ class LawJson {
   }
   double number(const Json& j, const char* key, const std::string& where) const {
     if (!j.contains(key)) bad(std::string("no \"") + key + "\"", where);
-    if (!j.at(key).is_number() || !std::isfinite(j.at(key).get<double>())) bad(std::string("\"") + key + "\" is no number", where);
+    if (!j.at(key).is_number() || !std::isfinite(j.at(key).get<double>()))
+      bad(std::string("\"") + key + "\" is no number", where);
     return j.at(key).get<double>();
   }
   double number(const Json& j, const char* key, const std::string& where, double otherwise) const {
@@ -49,11 +50,13 @@ class LawJson {
 
   /// Three finite numbers.
   Vec3 vector(const Json& j, const char* key, const std::string& where) const {
-    if (!j.contains(key) || !j.at(key).is_array() || j.at(key).size() != 3) bad(std::string("\"") + key + "\" is no list of three numbers", where);
+    if (!j.contains(key) || !j.at(key).is_array() || j.at(key).size() != 3)
+      bad(std::string("\"") + key + "\" is no list of three numbers", where);
     double v[3];
     for (int k = 0; k < 3; ++k) {
       const Json& n = j.at(key)[k];
-      if (!n.is_number() || !std::isfinite(n.get<double>())) bad(std::string("\"") + key + "\" is no list of three numbers", where);
+      if (!n.is_number() || !std::isfinite(n.get<double>()))
+        bad(std::string("\"") + key + "\" is no list of three numbers", where);
       v[k] = n.get<double>();
     }
     return {v[0], v[1], v[2]};
@@ -67,7 +70,9 @@ class LawJson {
     const double v = number(j, key, where, otherwise);
     if (!j.contains(key)) return otherwise;
     if (v < least || v > most || v != std::floor(v))
-      bad(std::string("\"") + key + "\" is no whole number from " + std::to_string(least) + " to " + std::to_string(most), where);
+      bad(std::string("\"") + key + "\" is no whole number from " + std::to_string(least) + " to " +
+              std::to_string(most),
+          where);
     return static_cast<int>(v);
   }
 

@@ -124,7 +124,8 @@ const NodeSet& set_named(const SolverModel& model, const std::string& name, cons
     if (s.name == name) return s;
     known.push_back(s.name);
   }
-  fail_input("the fibres name set '" + name + "', which the model does not have", where, "the nearest are " + nearest_names(name, known));
+  fail_input("the fibres name set '" + name + "', which the model does not have", where,
+             "the nearest are " + nearest_names(name, known));
 }
 
 }  // namespace
@@ -132,7 +133,8 @@ const NodeSet& set_named(const SolverModel& model, const std::string& name, cons
 void lay_axes(const std::array<Vec3, 2>& axes, const std::vector<std::int32_t>& tets, SolverSets& sets) {
   std::int32_t last = 0;
   for (const std::int32_t t : tets) last = std::max(last, t);
-  if (sets.axes.size() <= static_cast<std::size_t>(last)) sets.axes.resize(std::max<std::size_t>(static_cast<std::size_t>(last) + 1, sets.modulus_mpa.size()));
+  if (sets.axes.size() <= static_cast<std::size_t>(last))
+    sets.axes.resize(std::max<std::size_t>(static_cast<std::size_t>(last) + 1, sets.modulus_mpa.size()));
   for (const std::int32_t t : tets) sets.axes[t] = axes;
 }
 
@@ -143,10 +145,11 @@ std::size_t lay_fibres(SolverModel& model, Label label, const FibreRule& rule, c
     if (mesh.labels[t] == label) tets.push_back(static_cast<std::int32_t>(t));
   Laplace depth(mesh, tets);
   if (depth.hold(set_named(model, rule.from, where).nodes, 0) == 0)
-    fail_input("set '" + rule.from + "' of the fibres has no node of the label", where + ", from", "name a set on the label's own faces");
+    fail_input("set '" + rule.from + "' of the fibres has no node of the label", where + ", from",
+               "name a set on the label's own faces");
   if (depth.hold(set_named(model, rule.to, where).nodes, 1) == 0)
-    fail_input("set '" + rule.to + "' of the fibres has no node of the label, or only those of the other set", where + ", to",
-               "name two sets on the label's own faces, away from each other");
+    fail_input("set '" + rule.to + "' of the fibres has no node of the label, or only those of the other set",
+               where + ", to", "name two sets on the label's own faces, away from each other");
   depth.solve();
   model.sets.axes.resize(mesh.elements());
   std::size_t unclear = 0;
@@ -175,7 +178,8 @@ std::size_t lay_fibres(SolverModel& model, Label label, const FibreRule& rule, c
     }
     along = (1 / norm(along)) * along;
     const Vec3 around = cross(along, through);
-    const double angle = (rule.angle_deg[0] + std::clamp(here, 0.0, 1.0) * (rule.angle_deg[1] - rule.angle_deg[0])) * M_PI / 180;
+    const double angle =
+        (rule.angle_deg[0] + std::clamp(here, 0.0, 1.0) * (rule.angle_deg[1] - rule.angle_deg[0])) * M_PI / 180;
     const Vec3 fibre = std::cos(angle) * around + std::sin(angle) * along;
     model.sets.axes[t] = {fibre, cross(through, fibre)};
   }

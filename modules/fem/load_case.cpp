@@ -33,7 +33,8 @@ class Loader {
       for (const std::int32_t v : node_set(p.set).nodes) {
         const auto [at, fresh] = bound_.insert({v, p.name});
         if (!fresh)
-          fail("a node is bound to two points, '" + at->second + "' and '" + p.name + "'", "node " + std::to_string(v + 1), "choose sets that do not touch");
+          fail("a node is bound to two points, '" + at->second + "' and '" + p.name + "'",
+               "node " + std::to_string(v + 1), "choose sets that do not touch");
       }
     }
     for (const LoadCase::Spring& s : load_case.springs) spring(s);
@@ -51,12 +52,14 @@ class Loader {
   [[noreturn]] void missing(const std::string& name) const {
     std::vector<std::string> known;
     for (const NodeSet& s : model_.sets.node_sets) known.push_back(s.name);
-    const std::string nearest = "of its " + std::to_string(known.size()) + " sets the nearest are " + nearest_names(name, known);
+    const std::string nearest =
+        "of its " + std::to_string(known.size()) + " sets the nearest are " + nearest_names(name, known);
     for (const LabelInfo& l : model_.labels)
       for (const std::string end : {"low", "high"})
         if (name == l.name + "_cap_" + end)
-          fail("the load case names set '" + name + "', but label " + std::to_string(l.number) + " has no flat " + end + " end", "",
-               "mesh with --caps flat, choose its end with --select, or another set; " + nearest);
+          fail("the load case names set '" + name + "', but label " + std::to_string(l.number) + " has no flat " + end +
+                   " end",
+               "", "mesh with --caps flat, choose its end with --select, or another set; " + nearest);
     fail("the load case names set '" + name + "', which the model does not have", "", nearest);
   }
   const NodeSet& node_set(const std::string& name) const {
@@ -113,18 +116,20 @@ class Loader {
   void needs_density(const std::string& step) const {
     for (std::size_t t = 0; t < model_.sets.density_t_mm3.size(); ++t)
       if (!(model_.sets.density_t_mm3[t] > 0))
-        fail("gravity and natural frequencies need a density, and label " + std::to_string(model_.mesh.labels[t]) + " has none", step,
-             "give it \"density_t_mm3\" (water: 1e-9)");
+        fail("gravity and natural frequencies need a density, and label " + std::to_string(model_.mesh.labels[t]) +
+                 " has none",
+             step, "give it \"density_t_mm3\" (water: 1e-9)");
   }
 
-  void hold(const LoadCase::Held& h, std::map<std::pair<std::int32_t, int>, std::pair<double, std::string>>& held, LoadStep& out) const {
+  void hold(const LoadCase::Held& h, std::map<std::pair<std::int32_t, int>, std::pair<double, std::string>>& held,
+            LoadStep& out) const {
     // A point's six ways to move are numbered as a node's, behind all nodes.
     const auto point = rigid_.find(h.set);
     const auto hold_one = [&](std::int32_t v, int axis, double value) {
       const auto [at, fresh] = held.insert({{v, axis}, {value, h.set}});
       if (!fresh && at->second.first != value)
-        fail("a node is held to two different displacements, in sets '" + at->second.second + "' and '" + h.set + "'", "node " + std::to_string(v + 1),
-             "choose sets that do not touch, or the same displacement");
+        fail("a node is held to two different displacements, in sets '" + at->second.second + "' and '" + h.set + "'",
+             "node " + std::to_string(v + 1), "choose sets that do not touch, or the same displacement");
     };
     if (point != rigid_.end()) {
       PointSupport s;
@@ -139,15 +144,16 @@ class Loader {
     }
     for (const std::int32_t v : node_set(h.set).nodes) {
       if (const auto bound = bound_.find(v); bound != bound_.end())
-        fail("a node is held in set '" + h.set + "' and bound to point '" + bound->second + "'", "node " + std::to_string(v + 1),
-             "hold the point, or choose sets that do not touch");
+        fail("a node is held in set '" + h.set + "' and bound to point '" + bound->second + "'",
+             "node " + std::to_string(v + 1), "hold the point, or choose sets that do not touch");
       for (int axis = 0; axis < 3; ++axis)
         if (h.value_mm[axis]) hold_one(v, axis, *h.value_mm[axis]);
     }
     out.supports.push_back({h.set, h.value_mm});
   }
 
-  void load(const LoadCase::Loaded& l, std::map<std::int32_t, Vec3>& forces, std::map<std::int32_t, PointLoad>& point_loads, LoadStep& out) const {
+  void load(const LoadCase::Loaded& l, std::map<std::int32_t, Vec3>& forces,
+            std::map<std::int32_t, PointLoad>& point_loads, LoadStep& out) const {
     const Vec3 force = l.force_n.value_or(Vec3{}), moment = l.moment_nmm.value_or(Vec3{});
     if (const auto rigid = rigid_.find(l.set); rigid != rigid_.end()) {
       PointLoad& p = point_loads[rigid->second];
@@ -166,8 +172,10 @@ class Loader {
     spread(faces_of(l.set), force, moment, nullptr, forces);
   }
 
-  /// A traction a + b x (r - c) over the faces, c their centre, that has this force, and this moment about the point (or the centre).
-  void spread(const std::vector<TetFace>& faces, Vec3 force, Vec3 moment, const Vec3* about, std::map<std::int32_t, Vec3>& forces) const {
+  /// A traction a + b x (r - c) over the faces, c their centre, that has this force, and this moment about the point
+  /// (or the centre).
+  void spread(const std::vector<TetFace>& faces, Vec3 force, Vec3 moment, const Vec3* about,
+              std::map<std::int32_t, Vec3>& forces) const {
     double area = 0, m[3][3] = {{0}};
     Vec3 centre;
     visit_face_points(model_.mesh, faces, [&](const FacePoint& p) {
@@ -206,7 +214,8 @@ class Loader {
         areas[p.nodes[k]] += p.shape[k] * norm(p.area);
       }
     });
-    const double least = 1e-6 * area / static_cast<double>(areas.size());  // corners of second-order faces bear nothing, but for curvature
+    // corners of second-order faces bear nothing, but for curvature
+    const double least = 1e-6 * area / static_cast<double>(areas.size());
     for (const auto& [v, a] : areas) shares += a > least ? a : 0;
     SpringSet out;
     out.name = unique("springs_" + s.set);
@@ -219,7 +228,9 @@ class Loader {
       }
       const double stiffness[3] = {s.n_per_mm->x, s.n_per_mm->y, s.n_per_mm->z};
       for (int axis = 0; axis < 3; ++axis)
-        if (stiffness[axis] > 0) out.springs.push_back({v, {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0}, stiffness[axis] * a / shares});
+        if (stiffness[axis] > 0)
+          out.springs.push_back(
+              {v, {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0}, stiffness[axis] * a / shares});
     }
     model_.sets.springs.push_back(std::move(out));
   }
@@ -227,18 +238,21 @@ class Loader {
   SolverModel& model_;
   const std::string& path_;
   const LoadCase* case_ = nullptr;
-  std::map<std::string, std::int32_t> rigid_;    // points to places in SolverSets::points
+  std::map<std::string, std::int32_t> rigid_;  // points to places in SolverSets::points
   std::map<std::int32_t, std::string> bound_;  // nodes to their points
 };
 
 }  // namespace
 
-void apply_load_case(SolverModel& model, const LoadCase& load_case, const std::string& path) { Loader(model, path).run(load_case); }
+void apply_load_case(SolverModel& model, const LoadCase& load_case, const std::string& path) {
+  Loader(model, path).run(load_case);
+}
 
 Vec3 force_of(const SolverModel& model, const Pressure& pressure) {
   Vec3 sum;
   for (const FaceSet& s : model.sets.surfaces)
-    if (s.name == pressure.set) visit_face_points(model.mesh, s.faces, [&](const FacePoint& p) { sum = sum - pressure.mpa * p.area; });
+    if (s.name == pressure.set)
+      visit_face_points(model.mesh, s.faces, [&](const FacePoint& p) { sum = sum - pressure.mpa * p.area; });
   return sum;
 }
 

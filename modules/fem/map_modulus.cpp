@@ -54,12 +54,14 @@ std::vector<Place> tet_rule(int n) {
 
 }  // namespace
 
-std::vector<ModulusLaw::Value> map_modulus(const TetMesh& mesh, const std::vector<std::int32_t>& tets, const InsideVoxels& voxels,
-                                           double voxel_mm, const ModulusLaw& law, const MappingOptions& options) {
+std::vector<ModulusLaw::Value> map_modulus(const TetMesh& mesh, const std::vector<std::int32_t>& tets,
+                                           const InsideVoxels& voxels, double voxel_mm, const ModulusLaw& law,
+                                           const MappingOptions& options) {
   std::vector<std::vector<Place>> rules;
   for (int n = 0; n <= kMost; ++n) rules.push_back(n < 2 ? std::vector<Place>() : tet_rule(n));
   std::vector<std::vector<WedgePlace>> wedge_rules;
-  for (int n = 0; n <= kMost && !mesh.wedges.empty(); ++n) wedge_rules.push_back(n < 2 ? std::vector<WedgePlace>() : wedge_rule(gauss(n)));
+  for (int n = 0; n <= kMost && !mesh.wedges.empty(); ++n)
+    wedge_rules.push_back(n < 2 ? std::vector<WedgePlace>() : wedge_rule(gauss(n)));
   std::vector<ModulusLaw::Value> values(tets.size());
   constexpr std::size_t block = 512;
   parallel_for((tets.size() + block - 1) / block, options.threads, [&](std::size_t b) {
@@ -67,9 +69,13 @@ std::vector<ModulusLaw::Value> map_modulus(const TetMesh& mesh, const std::vecto
       const auto element = static_cast<std::size_t>(tets[i]);
       double longest = 0;
       if (mesh.is_wedge(element)) {
-        for (const auto& e : kWedgeEdges) longest = std::max(longest, norm(mesh.points[mesh.wedges[element - mesh.tets.size()][e[0]]] - mesh.points[mesh.wedges[element - mesh.tets.size()][e[1]]]));
+        for (const auto& e : kWedgeEdges)
+          longest = std::max(longest, norm(mesh.points[mesh.wedges[element - mesh.tets.size()][e[0]]] -
+                                           mesh.points[mesh.wedges[element - mesh.tets.size()][e[1]]]));
       } else {
-        for (const auto& e : kTetEdges) longest = std::max(longest, norm(mesh.points[mesh.tets[element][e[0]]] - mesh.points[mesh.tets[element][e[1]]]));
+        for (const auto& e : kTetEdges)
+          longest =
+              std::max(longest, norm(mesh.points[mesh.tets[element][e[0]]] - mesh.points[mesh.tets[element][e[1]]]));
       }
       const int n = std::clamp(static_cast<int>(std::ceil(1.5 * longest / voxel_mm)) + 1, 3, kMost);
       double weights = 0, intensity = 0;
@@ -97,7 +103,8 @@ std::vector<ModulusLaw::Value> map_modulus(const TetMesh& mesh, const std::vecto
           add(p.position, place.weight * p.determinant);
         }
       }
-      values[i] = options.integrate_modulus ? ModulusLaw::Value{sum.young_mpa / weights, sum.density_t_mm3 / weights} : law.at(intensity / weights);
+      values[i] = options.integrate_modulus ? ModulusLaw::Value{sum.young_mpa / weights, sum.density_t_mm3 / weights}
+                                            : law.at(intensity / weights);
     }
   });
   return values;

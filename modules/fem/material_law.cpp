@@ -6,7 +6,9 @@ namespace stackmesh {
 namespace {
 
 /// Factor to MPa or t/mm3; 0 for an unknown unit.
-double to_mpa(const std::string& unit) { return unit == "MPa" ? 1 : unit == "GPa" ? 1e3 : unit == "Pa" ? 1e-6 : 0; }
+double to_mpa(const std::string& unit) {
+  return unit == "MPa" ? 1 : unit == "GPa" ? 1e3 : unit == "Pa" ? 1e-6 : 0;
+}
 double to_t_mm3(const std::string& unit) {
   return unit == "g/cm3" ? 1e-9 : unit == "mg/cm3" || unit == "kg/m3" ? 1e-12 : unit == "t/mm3" ? 1 : 0;
 }

@@ -19,8 +19,8 @@ struct LawPiece {
 
 /// One step of a law: from one quantity to the next, each in its own unit.
 struct LawStep {
-  std::string from, to, unit;     ///< unit of `to`: g/cm3, mg/cm3, kg/m3, t/mm3, or MPa, GPa, Pa
-  std::vector<LawPiece> pieces;   ///< ascending up_to; a power of a negative number counts as that of 0
+  std::string from, to, unit;    ///< unit of `to`: g/cm3, mg/cm3, kg/m3, t/mm3, or MPa, GPa, Pa
+  std::vector<LawPiece> pieces;  ///< ascending up_to; a power of a negative number counts as that of 0
 };
 
 /// Intensity to modulus, step by step: calibration, densities, Young's modulus.
@@ -35,25 +35,25 @@ struct ModulusLaw {
   Value at(double intensity) const;
 };
 
-/// Fibres by rule: the wall's depth is the solution of Laplace's equation between two sets (0 on the first, 1 on the second), its
-/// gradient the way through the wall; the helix angle goes linearly with the depth from the first angle to the second. The fibre
-/// lies at that angle to the circumference, towards `along`, at right angles to the gradient.
+/// Fibres by rule: the wall's depth is the solution of Laplace's equation between two sets (0 on the first, 1 on the
+/// second), its gradient the way through the wall; the helix angle goes linearly with the depth from the first angle to
+/// the second. The fibre lies at that angle to the circumference, towards `along`, at right angles to the gradient.
 struct FibreRule {
-  std::string from, to;           ///< sets of faces: endocardium, epicardium
+  std::string from, to;  ///< sets of faces: endocardium, epicardium
   std::array<double, 2> angle_deg{60, -60};
-  Vec3 along = {0, 0, 1};         ///< the long axis, unit, from apex to base
+  Vec3 along = {0, 0, 1};  ///< the long axis, unit, from apex to base
 };
 
 /// What a label is made of: a constant modulus, or a law.
 struct LabelMaterial {
   MaterialKind kind = MaterialKind::linear;
-  std::vector<double> constants;              ///< of other kinds, see MaterialKind
-  std::optional<FibreRule> fibres;            ///< of materials with axes
-  std::optional<std::array<Vec3, 2>> axes;    ///< the same for all its elements
+  std::vector<double> constants;            ///< of other kinds, see MaterialKind
+  std::optional<FibreRule> fibres;          ///< of materials with axes
+  std::optional<std::array<Vec3, 2>> axes;  ///< the same for all its elements
   std::optional<double> young_mpa;
-  std::string law;                            ///< of MaterialPlan::laws; used where young_mpa is unset
+  std::string law;  ///< of MaterialPlan::laws; used where young_mpa is unset
   double poisson = 0.3;
-  std::optional<double> density_t_mm3;        ///< unset: the law's, else 0 (none written)
+  std::optional<double> density_t_mm3;           ///< unset: the law's, else 0 (none written)
   std::optional<double> floor_mpa, ceiling_mpa;  ///< of a law: elements beyond are set to it, and counted
 };
 
@@ -87,10 +87,10 @@ struct LoadCase {
   };
   /// Exactly one of pressure, and force or moment or both.
   struct Loaded {
-    std::string set;                       ///< of faces, or a point of `points`
-    std::optional<Vec3> force_n;           ///< in all, spread evenly over the faces
-    std::optional<double> pressure_mpa;    ///< against the faces
-    std::optional<Vec3> moment_nmm{};      ///< in all, about the point, or about the faces' centre
+    std::string set;                     ///< of faces, or a point of `points`
+    std::optional<Vec3> force_n;         ///< in all, spread evenly over the faces
+    std::optional<double> pressure_mpa;  ///< against the faces
+    std::optional<Vec3> moment_nmm{};    ///< in all, about the point, or about the faces' centre
   };
   /// A point that stands for a set of faces: bound to it as a rigid body, or its loads spread over the faces.
   struct Point {
@@ -100,8 +100,8 @@ struct LoadCase {
   };
   struct Spring {
     std::string set;
-    std::optional<Vec3> n_per_mm;        ///< in all, along the axes, spread evenly over the faces
-    std::optional<double> mpa_per_mm;    ///< foundation: pressure per mm along the faces' normals
+    std::optional<Vec3> n_per_mm;      ///< in all, along the axes, spread evenly over the faces
+    std::optional<double> mpa_per_mm;  ///< foundation: pressure per mm along the faces' normals
   };
   struct Acting {
     std::vector<Held> held;
@@ -119,7 +119,7 @@ struct LoadCase {
   Acting always;  ///< in every step
   std::vector<Point> points;
   std::vector<Spring> springs;
-  Step defaults;             ///< of the one step that there is where `steps` is empty
+  Step defaults;  ///< of the one step that there is where `steps` is empty
   std::vector<Step> steps;
 };
 
@@ -129,7 +129,8 @@ struct ContactLaw {
   Contact contact = Contact::tie;
   double friction = 0;
   std::optional<double> stiffness_mpa_mm;  ///< unset: see join_parts()
-  double stabilise = 0;  ///< of contact: springs hold the parts that have no support, in all as stiff as this share of the contact
+  /// of contact: springs hold the parts that have no support, in all as stiff as this share of the contact
+  double stabilise = 0;
 };
 
 /// A law file, read and checked.
@@ -147,8 +148,8 @@ struct MaterialPlan {
 std::vector<std::string> known_laws();
 
 /// Reads a law file (docs/fem.md has its schema).
-/// @throws Error(input) naming file and entry: no JSON, an unknown or missing entry or unit, a calibration whose slope is not
-/// above 0, a law that does not end in a modulus
+/// @throws Error(input) naming file and entry: no JSON, an unknown or missing entry or unit, a calibration whose slope
+/// is not above 0, a law that does not end in a modulus
 MaterialPlan read_law(const std::string& path);
 
 }  // namespace stackmesh

@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "fem/boundary_patches.h"
-#include "fem/solver_names.h"
 #include "fem/ordered_mesh.h"
 #include "fem/selection.h"
+#include "fem/solver_names.h"
 #include "fem/split_parts.h"
 #include "fem/uncut_mesh.h"
 
@@ -46,7 +46,8 @@ class Namer {
       for (const LabelInfo& known : labels)
         if (known.number == l) infos.back() = known;
     }
-    for (const LabelInfo& l : solver_names(std::move(infos))) (voids.count(l.number) > 0 ? voids_ : model_.labels).push_back(l);
+    for (const LabelInfo& l : solver_names(std::move(infos)))
+      (voids.count(l.number) > 0 ? voids_ : model_.labels).push_back(l);
     for (const LabelInfo& l : model_.labels) taken_.insert(lower_case(l.name));
   }
 
@@ -76,7 +77,8 @@ class Namer {
     std::set<Label> voids;
     if (behind.empty()) return voids;
     for (BoundaryFace& f : faces_)
-      if (const auto at = behind.find(sorted(f.v)); f.out == 0 && at != behind.end()) voids.insert(f.behind = at->second);
+      if (const auto at = behind.find(sorted(f.v)); f.out == 0 && at != behind.end())
+        voids.insert(f.behind = at->second);
     return voids;
   }
   static std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> v) {
@@ -114,7 +116,8 @@ class Namer {
     std::set<std::string> names;
     for (const auto& [name, labels] : o_.parts) {
       if (sanitised_name(name) != name || !names.insert(lower_case(name)).second)
-        fail_usage("'" + name + "' is no name for a part, or is there twice", "--parts", "use letters, digits and _, each name once: A=1,3 B=2,4");
+        fail_usage("'" + name + "' is no name for a part, or is there twice", "--parts",
+                   "use letters, digits and _, each name once: A=1,3 B=2,4");
       for (const Label l : labels)
         if (!part_of_label.insert({l, static_cast<int>(part_names_.size())}).second)
           fail_usage("label " + std::to_string(l) + " is in two parts", "--parts", "give each label to one part");
@@ -131,20 +134,23 @@ class Namer {
 
   void outer_of(const LabelInfo& label) {
     const std::string n = label.name, who = "label " + std::to_string(label.number);
-    std::vector<std::int32_t> outer = faces_where([&](const BoundaryFace& f) { return f.in == label.number && f.out == 0 && f.behind == 0; });
+    std::vector<std::int32_t> outer =
+        faces_where([&](const BoundaryFace& f) { return f.in == label.number && f.out == 0 && f.behind == 0; });
     if (outer.empty()) return;
     add(n + "_outer", who + ": faces to the background", outer);
     std::vector<char> wall(faces_.size(), 0);
     for (const bool high : {false, true}) {
       const Patch cap = flat_cap(model_.mesh, faces_, outer, high ? o_.up : -1.0 * o_.up);
       for (const std::int32_t f : cap) wall[f] = 1;
-      add(n + (high ? "_cap_high" : "_cap_low"), who + ": flat " + (high ? "high" : "low") + " end along the stacking axis", cap);
+      add(n + (high ? "_cap_high" : "_cap_low"),
+          who + ": flat " + (high ? "high" : "low") + " end along the stacking axis", cap);
       (high ? caps_high_ : caps_low_).push_back(cap);
     }
     PatchOptions options;
     options.sharp_deg = o_.sharp_deg;
     std::vector<Patch> patches = split_at_sharp_edges(faces_, outer, wall, options);
-    patches.erase(std::remove_if(patches.begin(), patches.end(), [&](const Patch& p) { return wall[p[0]] != 0; }), patches.end());
+    patches.erase(std::remove_if(patches.begin(), patches.end(), [&](const Patch& p) { return wall[p[0]] != 0; }),
+                  patches.end());
     join_islands(faces_, faces_where([&](const BoundaryFace& f) { return f.in == label.number; }), 0.01, patches);
     if (patches.size() == 1 && patches[0].size() == outer.size()) return;
     for (std::size_t i = 0; i < patches.size(); ++i)
@@ -156,18 +162,22 @@ class Namer {
     for (std::size_t i = 0; i < faces_.size(); ++i)
       if (faces_[i].in == label.number && faces_[i].out != 0) to[faces_[i].out].push_back(static_cast<std::int32_t>(i));
     for (auto& [other, list] : to)
-      add(label.name + "_to_" + name_of(other), "faces of label " + std::to_string(label.number) + " on label " + std::to_string(other), std::move(list));
+      add(label.name + "_to_" + name_of(other),
+          "faces of label " + std::to_string(label.number) + " on label " + std::to_string(other), std::move(list));
   }
 
   void walls_of(const LabelInfo& hollow) {
     int labels = 0;
     for (const LabelInfo& l : model_.labels) {
-      std::vector<std::int32_t> wall = faces_where([&](const BoundaryFace& f) { return f.in == l.number && f.behind == hollow.number; });
+      std::vector<std::int32_t> wall =
+          faces_where([&](const BoundaryFace& f) { return f.in == l.number && f.behind == hollow.number; });
       labels += wall.empty() ? 0 : 1;
-      add(l.name + "_inner_" + void_name(hollow), "faces of label " + std::to_string(l.number) + " on void " + std::to_string(hollow.number), std::move(wall));
+      add(l.name + "_inner_" + void_name(hollow),
+          "faces of label " + std::to_string(l.number) + " on void " + std::to_string(hollow.number), std::move(wall));
     }
     if (labels > 1)
-      add("inner_" + void_name(hollow), "faces of all labels on void " + std::to_string(hollow.number), faces_where([&](const BoundaryFace& f) { return f.behind == hollow.number; }));
+      add("inner_" + void_name(hollow), "faces of all labels on void " + std::to_string(hollow.number),
+          faces_where([&](const BoundaryFace& f) { return f.behind == hollow.number; }));
   }
   /// By its name, or the bare number where it has none.
   static std::string void_name(const LabelInfo& hollow) {
@@ -195,7 +205,8 @@ class Namer {
         all.insert(all.end(), c.begin(), c.end());
         ++labels;
       }
-      if (labels > 1) add(high ? "cap_high" : "cap_low", std::string("flat ") + (high ? "high" : "low") + " ends of all labels", all);
+      if (labels > 1)
+        add(high ? "cap_high" : "cap_low", std::string("flat ") + (high ? "high" : "low") + " ends of all labels", all);
     }
   }
 
@@ -207,15 +218,19 @@ class Namer {
         const Vec3 out = high ? box.axes[axis] : -1.0 * box.axes[axis];
         const double at = dot(out, box.origin + (high ? box.length_mm[axis] : 0.0) * box.axes[axis]);
         add(std::string("border_") + "xyz"[axis] + (high ? "_high" : "_low"),
-            std::string("faces on the image's own side, ") + "xyz"[axis] + (high ? " high" : " low"), faces_where([&](const BoundaryFace& f) {
+            std::string("faces on the image's own side, ") + "xyz"[axis] + (high ? " high" : " low"),
+            faces_where([&](const BoundaryFace& f) {
               bool on = f.out == 0 && f.behind == 0 && dot(out, f.normal) > 0.9;
-              for (const std::int32_t v : f.v) on = on && dot(out, model_.mesh.points[v]) > at - 0.3 * box.spacing_mm[axis];
+              for (const std::int32_t v : f.v)
+                on = on && dot(out, model_.mesh.points[v]) > at - 0.3 * box.spacing_mm[axis];
               return on;
             }));
       }
   }
 
-  int part(const BoundaryFace& f, bool other) const { return other && f.out == 0 ? -1 : part_of_.at(other ? f.out : f.in); }
+  int part(const BoundaryFace& f, bool other) const {
+    return other && f.out == 0 ? -1 : part_of_.at(other ? f.out : f.in);
+  }
 
   void parts() {
     if (part_names_.empty()) return;
@@ -228,7 +243,8 @@ class Namer {
           return part(f, false) == static_cast<int>(a) && part(f, true) == static_cast<int>(b);
         });
         if (list.empty()) continue;
-        add("contact_" + part_names_[a] + "_" + part_names_[b], "faces of part " + part_names_[a] + " on part " + part_names_[b], list);
+        add("contact_" + part_names_[a] + "_" + part_names_[b],
+            "faces of part " + part_names_[a] + " on part " + part_names_[b], list);
         contacts_[{static_cast<int>(a), static_cast<int>(b)}] = {lists_.back().name, lists_.back().faces};
       }
     for (const auto& [ab, contact] : contacts_) {
@@ -257,7 +273,8 @@ class Namer {
     };
     const auto place = [&](std::int32_t f) {
       if (faces_[f].behind != 0) return name_of(faces_[f].in) + "_inner_" + std::to_string(faces_[f].behind);
-      return faces_[f].out == 0 ? name_of(faces_[f].in) + "_outer" : name_of(faces_[f].in) + "_to_" + name_of(faces_[f].out);
+      return faces_[f].out == 0 ? name_of(faces_[f].in) + "_outer"
+                                : name_of(faces_[f].in) + "_to_" + name_of(faces_[f].out);
     };
     const auto names = [&] {
       std::vector<std::string> all;
@@ -287,7 +304,8 @@ class Namer {
       shells.thickness_mm = thickness;
       shells.faces = outer_faces(label);
       if (shells.faces.empty())
-        fail_input("label " + std::to_string(label) + " has no faces to the background", "--skin", "name a label with outer faces");
+        fail_input("label " + std::to_string(label) + " has no faces to the background", "--skin",
+                   "name a label with outer faces");
       shells.name = unique(name_of(label) + "_skin");
       model_.sets.shells.push_back(std::move(shells));
     }
@@ -327,7 +345,8 @@ class Namer {
       original = split_parts(mesh, part_of_tet);
       model_.sets.parts = part_names_;
       model_.sets.part_of_node.assign(mesh.points.size(), 0);
-      for (std::size_t t = 0; t < mesh.elements(); ++t) each_node(mesh, t, [&](std::int32_t v) { model_.sets.part_of_node[v] = part_of_tet[t]; });
+      for (std::size_t t = 0; t < mesh.elements(); ++t)
+        each_node(mesh, t, [&](std::int32_t v) { model_.sets.part_of_node[v] = part_of_tet[t]; });
     }
     for (BoundaryFace& f : faces_) {
       const auto nodes = outward_nodes(mesh, f.at);
@@ -348,7 +367,8 @@ class Namer {
   void rims(const std::vector<std::int32_t>& original) {
     const TetMesh& mesh = model_.mesh;
     for (const auto& [ab, contact] : contacts_) {
-      std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> edges;  // ends to how often, and mid-side node
+      // ends to how often, and mid-side node
+      std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> edges;
       for (const std::int32_t f : contact.second) {
         const auto nodes = outward_nodes(mesh, faces_[f].at);
         for (int k = 0; k < 3; ++k) edges[std::minmax(nodes[k], nodes[(k + 1) % 3])].push_back(nodes[3 + k]);
@@ -363,7 +383,7 @@ class Namer {
                 "outline of part " + part_names_[ab.first] + "'s contact with part " + part_names_[ab.second]);
     }
     if (part_names_.size() < 3) return;
-    std::map<std::int32_t, std::set<int>> parts_of;                // by original node
+    std::map<std::int32_t, std::set<int>> parts_of;  // by original node
     std::map<std::int32_t, std::set<std::int32_t>> copies;
     for (std::size_t t = 0; t < mesh.elements(); ++t) {
       const auto visit = [&](std::int32_t v) {
@@ -374,7 +394,8 @@ class Namer {
     }
     std::map<std::set<int>, NodeSet> lines;
     for (const auto& [node, parts] : parts_of)
-      if (parts.size() > 2) lines[parts].nodes.insert(lines[parts].nodes.end(), copies[node].begin(), copies[node].end());
+      if (parts.size() > 2)
+        lines[parts].nodes.insert(lines[parts].nodes.end(), copies[node].begin(), copies[node].end());
     for (auto& [parts, set] : lines) {
       std::string name = "triple";
       for (const int p : parts) name += "_" + part_names_[p];

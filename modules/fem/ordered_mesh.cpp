@@ -17,7 +17,8 @@ TetMesh ordered_mesh(const TetMesh& mesh) {
   std::vector<std::int32_t> number(mesh.points.size(), -1);
   for (const std::size_t e : order)
     each_node(mesh, e, [&](std::int32_t v) {
-      if (v < 0 || static_cast<std::size_t>(v) >= number.size()) fail_internal("an element names point " + std::to_string(v), "solver model");
+      if (v < 0 || static_cast<std::size_t>(v) >= number.size())
+        fail_internal("an element names point " + std::to_string(v), "solver model");
       number[v] = 0;
     });
   TetMesh out;

@@ -19,7 +19,8 @@ class ModelReader {
       m_.kind = MaterialKind::mooney_rivlin;
       only({"C10_MPa", "C01_MPa", "bulk_MPa"}, false);
       m_.constants = {law_.number(j_, "C10_MPa", where_), law_.number(j_, "C01_MPa", where_), positive("bulk_MPa")};
-      if (!(m_.constants[0] + m_.constants[1] > 0)) law_.bad("\"C10_MPa\" and \"C01_MPa\" together are not above 0", where_);
+      if (!(m_.constants[0] + m_.constants[1] > 0))
+        law_.bad("\"C10_MPa\" and \"C01_MPa\" together are not above 0", where_);
       small_strain(2 * (m_.constants[0] + m_.constants[1]), m_.constants[2]);
     } else if (model == "holzapfel") {
       m_.kind = MaterialKind::holzapfel;
@@ -45,7 +46,8 @@ class ModelReader {
     if (has_axes) known.insert({"fibres", "axes"});
     law_.only(j_, where_, known);
     if (!has_axes) return;
-    if (j_.contains("fibres") == j_.contains("axes")) law_.bad("exactly one of \"fibres\" and \"axes\" is needed", where_);
+    if (j_.contains("fibres") == j_.contains("axes"))
+      law_.bad("exactly one of \"fibres\" and \"axes\" is needed", where_);
     if (j_.contains("axes")) axes(j_.at("axes"), where_ + ", axes");
     else fibres(j_.at("fibres"), where_ + ", fibres");
   }
@@ -55,15 +57,19 @@ class ModelReader {
     return v;
   }
   void small_strain(double shear, double bulk) {
-    if (!(bulk > 2.0 / 3 * shear)) law_.bad("\"bulk_MPa\" is not above two thirds of the shear modulus: Poisson's ratio would not be above 0", where_);
+    if (!(bulk > 2.0 / 3 * shear))
+      law_.bad("\"bulk_MPa\" is not above two thirds of the shear modulus: Poisson's ratio would not be above 0",
+               where_);
     m_.young_mpa = 9 * bulk * shear / (3 * bulk + shear);
     m_.poisson = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
   }
   void orthotropic() {
-    const Vec3 e = law_.vector(j_, "E_MPa", where_), nu = law_.vector(j_, "poisson", where_), g = law_.vector(j_, "G_MPa", where_);
+    const Vec3 e = law_.vector(j_, "E_MPa", where_), nu = law_.vector(j_, "poisson", where_),
+               g = law_.vector(j_, "G_MPa", where_);
     if (!(std::min({e.x, e.y, e.z, g.x, g.y, g.z}) > 0)) law_.bad("a modulus is not above 0", where_);
     const double nu21 = nu.x * e.y / e.x, nu31 = nu.y * e.z / e.x, nu32 = nu.z * e.z / e.y;
-    if (!(nu.x * nu21 < 1 && nu.y * nu31 < 1 && nu.z * nu32 < 1 && 1 - nu.x * nu21 - nu.z * nu32 - nu.y * nu31 - 2 * nu21 * nu32 * nu.y > 0))
+    if (!(nu.x * nu21 < 1 && nu.y * nu31 < 1 && nu.z * nu32 < 1 &&
+          1 - nu.x * nu21 - nu.z * nu32 - nu.y * nu31 - 2 * nu21 * nu32 * nu.y > 0))
       law_.bad("no such material can be: with these moduli and ratios a strain would give energy back", where_);
     m_.constants = {e.x, e.y, e.z, nu.x, nu.y, nu.z, g.x, g.y, g.z};
     m_.young_mpa = e.x;
@@ -90,7 +96,8 @@ class ModelReader {
     rule.along = direction(j, "along", where);
     if (j.contains("angles_deg")) {
       const Json& a = j.at("angles_deg");
-      if (!a.is_array() || a.size() != 2 || !a[0].is_number() || !a[1].is_number()) law_.bad("\"angles_deg\" is no list of two numbers", where);
+      if (!a.is_array() || a.size() != 2 || !a[0].is_number() || !a[1].is_number())
+        law_.bad("\"angles_deg\" is no list of two numbers", where);
       rule.angle_deg = {a[0].get<double>(), a[1].get<double>()};
     }
     m_.fibres = rule;
@@ -104,6 +111,8 @@ class ModelReader {
 
 }  // namespace
 
-LabelMaterial read_label_model(const LawJson& law, const Json& j, const std::string& where) { return ModelReader(law, j, where).read(); }
+LabelMaterial read_label_model(const LawJson& law, const Json& j, const std::string& where) {
+  return ModelReader(law, j, where).read();
+}
 
 }  // namespace stackmesh

@@ -15,13 +15,16 @@ struct KnownLaw {
   std::vector<LawStep> steps;  // behind the calibration, from a density in g/cm3
 };
 
-/// Ash density from QCT density, and ash over apparent density 0.6 (schileo2008); morgan2003: femoral neck; keller1994: pooled.
+/// Ash density from QCT density, and ash over apparent density 0.6 (schileo2008); morgan2003: femoral neck; keller1994:
+/// pooled.
 const std::vector<KnownLaw>& known() {
   constexpr double all = std::numeric_limits<double>::infinity();
   const LawStep ash = {"qct_density", "ash_density", "g/cm3", {{all, 0.877, 1, 0.079}}};
   const LawStep apparent = {"ash_density", "apparent_density", "g/cm3", {{all, 1 / 0.6, 1, 0}}};
   static const std::vector<KnownLaw> laws = {
-      {"morgan2003_femoral_neck", "schileo2008, morgan2003", {ash, apparent, {"apparent_density", "E", "MPa", {{all, 6850, 1.49, 0}}}}},
+      {"morgan2003_femoral_neck",
+       "schileo2008, morgan2003",
+       {ash, apparent, {"apparent_density", "E", "MPa", {{all, 6850, 1.49, 0}}}}},
       {"keller1994", "schileo2008, keller1994", {ash, {"ash_density", "E", "MPa", {{all, 10500, 2.29, 0}}}}}};
   return laws;
 }
@@ -37,10 +40,13 @@ class LawReader : LawJson {
     try {
       j = Json::parse(text);
     } catch (const Json::parse_error& e) {
-      fail_input("the material law is no JSON (byte " + std::to_string(e.byte) + ")", plan_.path, "mend the file; docs/fem.md has the schema");
+      fail_input("the material law is no JSON (byte " + std::to_string(e.byte) + ")", plan_.path,
+                 "mend the file; docs/fem.md has the schema");
     }
-    only(j, "the file", {"schema", "comment", "units", "calibration", "laws", "labels", "skins", "mapping", "load_case", "contact"});
-    if (!j.contains("schema") || j.at("schema") != "stackmesh-law-1") bad("\"schema\" is not \"stackmesh-law-1\"", "the file");
+    only(j, "the file",
+         {"schema", "comment", "units", "calibration", "laws", "labels", "skins", "mapping", "load_case", "contact"});
+    if (!j.contains("schema") || j.at("schema") != "stackmesh-law-1")
+      bad("\"schema\" is not \"stackmesh-law-1\"", "the file");
     units(j);
     if (j.contains("calibration")) calibration(j.at("calibration"));
     if (j.contains("laws"))
@@ -58,7 +64,8 @@ class LawReader : LawJson {
  private:
   void units(const Json& j) {
     const std::string where = "units";
-    if (!j.contains("units")) bad("no \"units\": the file must say {\"length\": \"mm\", \"force\": \"N\", \"stress\": \"MPa\"}", "the file");
+    if (!j.contains("units"))
+      bad("no \"units\": the file must say {\"length\": \"mm\", \"force\": \"N\", \"stress\": \"MPa\"}", "the file");
     const Json& u = j.at("units");
     only(u, where, {"length", "force", "stress", "density"});
     if (text(u, "length", where) != "mm") bad("the unit of length is not mm", where);
@@ -128,10 +135,13 @@ class LawReader : LawJson {
       step.unit = text(s, "unit", at);
       step.pieces = pieces(s, at);
       const std::string before = i == 0 ? "" : law.steps.back().to;
-      if (i > 0 && step.from != before) bad("it begins with \"" + step.from + "\", but the step before gives \"" + before + "\"", at);
+      if (i > 0 && step.from != before)
+        bad("it begins with \"" + step.from + "\", but the step before gives \"" + before + "\"", at);
       const bool last = i + 1 == j.at("steps").size();
       if (last != (kModulusUnits.count(step.unit) > 0) || (!last && kDensityUnits.count(step.unit) == 0))
-        bad(last ? "the last step does not give a modulus in MPa, GPa or Pa" : "unit \"" + step.unit + "\" is no unit of density", at);
+        bad(last ? "the last step does not give a modulus in MPa, GPa or Pa"
+                 : "unit \"" + step.unit + "\" is no unit of density",
+            at);
       if (i == 0 && !last)
         for (const LawPiece& p : step.pieces)
           if (!(p.factor > 0)) bad("the slope is not above 0: density would fall as intensity rises", at);
@@ -150,7 +160,8 @@ class LawReader : LawJson {
     if (plan_.laws.count(name) > 0) return;
     for (const KnownLaw& k : known()) {
       if (name != k.name) continue;
-      if (!calibration_) bad("law \"" + name + "\" needs a \"calibration\" of the scanner (intensity to density)", where);
+      if (!calibration_)
+        bad("law \"" + name + "\" needs a \"calibration\" of the scanner (intensity to density)", where);
       LawStep first = *calibration_;
       const double scale = first.unit == "mg/cm3" || first.unit == "kg/m3" ? 1e-3 : first.unit == "t/mm3" ? 1e9 : 1;
       first.pieces[0].factor *= scale;
@@ -184,7 +195,8 @@ class LawReader : LawJson {
       if (j.contains("E_MPa")) {
         m.young_mpa = number(j, "E_MPa", where);
         if (!(*m.young_mpa > 0)) bad("\"E_MPa\" is not above 0", where);
-        if (j.contains("floor_MPa") || j.contains("ceiling_MPa")) bad("a floor or ceiling is for a label with a law", where);
+        if (j.contains("floor_MPa") || j.contains("ceiling_MPa"))
+          bad("a floor or ceiling is for a label with a law", where);
       } else {
         m.law = text(j, "law", where);
         take_known(m.law, where);
@@ -224,15 +236,19 @@ class LawReader : LawJson {
       m.integrate_modulus = what == "modulus";
     }
     const double erode = number(j, "erode_px", where, m.erode_px), bins = number(j, "bins", where, m.bins);
-    if (erode < 0 || erode > 20 || erode != std::floor(erode)) bad("\"erode_px\" is no whole number from 0 to 20", where);
-    if (bins < 1 || bins > 100000 || bins != std::floor(bins)) bad("\"bins\" is no whole number from 1 to 100000", where);
+    if (erode < 0 || erode > 20 || erode != std::floor(erode))
+      bad("\"erode_px\" is no whole number from 0 to 20", where);
+    if (bins < 1 || bins > 100000 || bins != std::floor(bins))
+      bad("\"bins\" is no whole number from 1 to 100000", where);
     m.erode_px = static_cast<int>(erode);
     m.bins = static_cast<int>(bins);
     if (j.contains("binning")) {
       const std::string how = text(j, "binning", where);
       if (how != "logarithmic" && how != "equal_count" && how != "equal_modulus")
         bad("\"binning\" is none of \"logarithmic\", \"equal_count\" and \"equal_modulus\"", where);
-      m.binning = how == "logarithmic" ? Binning::logarithmic : how == "equal_count" ? Binning::equal_count : Binning::equal_modulus;
+      m.binning = how == "logarithmic"   ? Binning::logarithmic
+                  : how == "equal_count" ? Binning::equal_count
+                                         : Binning::equal_modulus;
     }
   }
 
@@ -240,14 +256,16 @@ class LawReader : LawJson {
     const std::string where = "contact";
     only(j, where, {"comment", "source", "parts", "type", "friction", "stiffness_MPa_mm", "stabilise"});
     ContactLaw law;
-    if (!j.contains("parts") || !j.at("parts").is_array() || j.at("parts").size() != 2 || !j.at("parts")[0].is_string() ||
-        !j.at("parts")[1].is_string())
+    if (!j.contains("parts") || !j.at("parts").is_array() || j.at("parts").size() != 2 ||
+        !j.at("parts")[0].is_string() || !j.at("parts")[1].is_string())
       bad("\"parts\" is no list of two names of parts", where);
     for (int k = 0; k < 2; ++k) law.parts[k] = j.at("parts")[k].get<std::string>();
     const std::string type = text(j, "type", where);
-    if (type != "tie" && type != "contact" && type != "none") bad("\"type\" is none of \"tie\", \"contact\", \"none\"", where);
+    if (type != "tie" && type != "contact" && type != "none")
+      bad("\"type\" is none of \"tie\", \"contact\", \"none\"", where);
     law.contact = type == "tie" ? Contact::tie : type == "contact" ? Contact::contact : Contact::none;
-    if (law.contact != Contact::contact && (j.contains("friction") || j.contains("stiffness_MPa_mm") || j.contains("stabilise")))
+    if (law.contact != Contact::contact &&
+        (j.contains("friction") || j.contains("stiffness_MPa_mm") || j.contains("stabilise")))
       bad("\"friction\", \"stiffness_MPa_mm\" and \"stabilise\" are for type \"contact\"", where);
     law.stabilise = number(j, "stabilise", where, 0);
     if (!(law.stabilise >= 0 && law.stabilise <= 1)) bad("\"stabilise\" is no share from 0 to 1", where);

@@ -12,12 +12,15 @@ class LoadCaseReader {
 
   LoadCase read(const Json& j) {
     const std::string where = "load_case";
-    law_.only(j, where, {"comment", "source", "fixed", "moved", "loaded", "gravity_mm_s2", "points", "springs", "large_displacements", "increments", "steps"});
+    law_.only(j, where,
+              {"comment", "source", "fixed", "moved", "loaded", "gravity_mm_s2", "points", "springs",
+               "large_displacements", "increments", "steps"});
     for (const Json& p : filled_list(j, "points", where)) point(p, where + ", points");
     for (const Json& s : filled_list(j, "springs", where)) spring(s, where + ", springs");
     case_.always = acting(j, where);
     how(j, where, case_.defaults);
-    for (const Json& s : filled_list(j, "steps", where)) step(s, where + ", step " + std::to_string(case_.steps.size() + 1));
+    for (const Json& s : filled_list(j, "steps", where))
+      step(s, where + ", step " + std::to_string(case_.steps.size() + 1));
     return std::move(case_);
   }
 
@@ -30,9 +33,11 @@ class LoadCaseReader {
   }
 
   /// Axes or, with `allow_none`, possibly "".
-  std::array<bool, 3> axes(const Json& j, const char* key, const std::string& where, const std::string& otherwise, bool allow_none) const {
+  std::array<bool, 3> axes(const Json& j, const char* key, const std::string& where, const std::string& otherwise,
+                           bool allow_none) const {
     const std::string text = j.contains(key) ? law_.text(j, key, where) : otherwise;
-    if ((text.empty() && !allow_none) || text.find_first_not_of("xyz") != std::string::npos) law_.bad(std::string("\"") + key + "\" is not some of xyz", where);
+    if ((text.empty() && !allow_none) || text.find_first_not_of("xyz") != std::string::npos)
+      law_.bad(std::string("\"") + key + "\" is not some of xyz", where);
     std::array<bool, 3> on{};
     for (const char a : text) on[a - 'x'] = true;
     return on;
@@ -66,7 +71,8 @@ class LoadCaseReader {
     return {name, true};
   }
   void needs_rigid(const std::string& name, const std::string& where) const {
-    if (!find_point(name)->rigid) law_.bad("point \"" + name + "\" is distributing: it takes loads, but cannot be held or moved", where);
+    if (!find_point(name)->rigid)
+      law_.bad("point \"" + name + "\" is distributing: it takes loads, but cannot be held or moved", where);
   }
 
   LoadCase::Acting acting(const Json& j, const std::string& where) const {
@@ -76,7 +82,8 @@ class LoadCaseReader {
       law_.only(f, at, {"comment", "set", "point", "axes", "rotations"});
       const auto [name, is_point] = target(f, at);
       LoadCase::Held held{name, {}};
-      const auto shifts = axes(f, "axes", at, "xyz", is_point), turns = axes(f, "rotations", at, is_point ? "xyz" : "", true);
+      const auto shifts = axes(f, "axes", at, "xyz", is_point),
+                 turns = axes(f, "rotations", at, is_point ? "xyz" : "", true);
       if (is_point) needs_rigid(name, at);
       else if (f.contains("rotations")) law_.bad("\"rotations\" are of a point: nodes of tetrahedra have none", at);
       for (int k = 0; k < 3; ++k) {
@@ -93,7 +100,9 @@ class LoadCaseReader {
       if (!is_point && m.contains("rad")) law_.bad("\"rad\" is of a point: nodes of tetrahedra have no rotations", at);
       if (is_point) needs_rigid(name, at);
       LoadCase::Held held{name, values(m, "mm", at), values(m, "rad", at)};
-      const auto any = [](const auto& v) { return std::any_of(v.begin(), v.end(), [](const auto& x) { return x.has_value(); }); };
+      const auto any = [](const auto& v) {
+        return std::any_of(v.begin(), v.end(), [](const auto& x) { return x.has_value(); });
+      };
       if (!any(held.value_mm) && !any(held.value_rad)) law_.bad("\"mm\" moves nothing", at);
       out.held.push_back(held);
     }
@@ -127,7 +136,8 @@ class LoadCaseReader {
     p.set = law_.text(j, "set", where);
     p.at_mm = law_.vector(j, "mm", where);
     const std::string kind = j.contains("coupling") ? law_.text(j, "coupling", where) : "rigid";
-    if (kind != "rigid" && kind != "distributing") law_.bad("\"coupling\" is neither \"rigid\" nor \"distributing\"", where);
+    if (kind != "rigid" && kind != "distributing")
+      law_.bad("\"coupling\" is neither \"rigid\" nor \"distributing\"", where);
     p.rigid = kind == "rigid";
     if (find_point(p.name) != nullptr) law_.bad("point \"" + p.name + "\" is there twice", where);
     case_.points.push_back(p);
@@ -137,11 +147,13 @@ class LoadCaseReader {
     law_.only(j, where, {"comment", "set", "N_per_mm", "MPa_per_mm"});
     LoadCase::Spring s;
     s.set = law_.text(j, "set", where);
-    if (j.contains("N_per_mm") == j.contains("MPa_per_mm")) law_.bad("exactly one of \"N_per_mm\" and \"MPa_per_mm\" is needed", where);
+    if (j.contains("N_per_mm") == j.contains("MPa_per_mm"))
+      law_.bad("exactly one of \"N_per_mm\" and \"MPa_per_mm\" is needed", where);
     if (j.contains("N_per_mm")) {
       s.n_per_mm = law_.vector(j, "N_per_mm", where);
       const Vec3 k = *s.n_per_mm;
-      if (!(k.x >= 0 && k.y >= 0 && k.z >= 0 && k.x + k.y + k.z > 0)) law_.bad("\"N_per_mm\" is negative, or 0 along all axes", where);
+      if (!(k.x >= 0 && k.y >= 0 && k.z >= 0 && k.x + k.y + k.z > 0))
+        law_.bad("\"N_per_mm\" is negative, or 0 along all axes", where);
     } else {
       s.mpa_per_mm = law_.number(j, "MPa_per_mm", where);
       if (!(*s.mpa_per_mm > 0)) law_.bad("\"MPa_per_mm\" is not above 0", where);
@@ -155,7 +167,9 @@ class LoadCaseReader {
   }
 
   void step(const Json& j, const std::string& where) {
-    law_.only(j, where, {"comment", "name", "type", "modes", "large_displacements", "increments", "fixed", "moved", "loaded", "gravity_mm_s2"});
+    law_.only(j, where,
+              {"comment", "name", "type", "modes", "large_displacements", "increments", "fixed", "moved", "loaded",
+               "gravity_mm_s2"});
     LoadCase::Step s;
     s.name = j.contains("name") ? law_.text(j, "name", where) : "step " + std::to_string(case_.steps.size() + 1);
     const std::string type = j.contains("type") ? law_.text(j, "type", where) : "static";
@@ -165,7 +179,8 @@ class LoadCaseReader {
     s.modes = law_.whole(j, "modes", where, 1, 1000, 10);
     how(j, where, s);
     s.acting = acting(j, where);
-    if (type == "frequency" && (!s.acting.loaded.empty() || s.acting.gravity_mm_s2)) law_.bad("a frequency step has no loads", where);
+    if (type == "frequency" && (!s.acting.loaded.empty() || s.acting.gravity_mm_s2))
+      law_.bad("a frequency step has no loads", where);
     case_.steps.push_back(std::move(s));
   }
 
@@ -175,6 +190,8 @@ class LoadCaseReader {
 
 }  // namespace
 
-LoadCase read_load_case(const LawJson& law, const Json& j) { return LoadCaseReader(law).read(j); }
+LoadCase read_load_case(const LawJson& law, const Json& j) {
+  return LoadCaseReader(law).read(j);
+}
 
 }  // namespace stackmesh

@@ -12,7 +12,8 @@ namespace {
 
 using Stress = std::array<double, 6>;  // xx, yy, zz, xy, yz, zx
 
-constexpr double kNear = 0.58541019662496852, kFar = 0.1381966011250105;  // four points, exact for squares of linear stress
+// four points, exact for squares of linear stress
+constexpr double kNear = 0.58541019662496852, kFar = 0.1381966011250105;
 
 double mises(const Stress& s) {
   const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
@@ -37,14 +38,16 @@ std::array<Vec3, 4> gradients(const std::array<Vec3, 4>& d, double& determinant)
 
 class Recovery {
  public:
-  Recovery(const SolverModel& model, const std::vector<Vec3>& u) : model_(model), mesh_(model.mesh), u_(u), points_(mesh_.mid.empty() ? 1 : 4) {}
+  Recovery(const SolverModel& model, const std::vector<Vec3>& u)
+      : model_(model), mesh_(model.mesh), u_(u), points_(mesh_.mid.empty() ? 1 : 4) {}
 
   StressMeasure run() {
     const SolverSets& sets = model_.sets;
     material_.assign(mesh_.tets.size(), nullptr);
     for (const ElementMaterial& m : sets.materials) {
       if (m.kind != MaterialKind::linear)
-        fail_usage("errors of stress are estimated for linear isotropic materials", m.name, "leave --accuracy out, or give E_MPa and poisson");
+        fail_usage("errors of stress are estimated for linear isotropic materials", m.name,
+                   "leave --accuracy out, or give E_MPa and poisson");
       for (const std::int32_t t : m.tets) material_[t] = &m;
     }
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) elements_.push_back(element(t));
@@ -59,9 +62,9 @@ class Recovery {
 
  private:
   struct Element {
-    std::array<Stress, 4> at{};        // at points of integration; the first alone where it is constant
-    std::array<double, 4> volume{};    // that they stand for
-    double error = 0, whole = 0;       // energies
+    std::array<Stress, 4> at{};      // at points of integration; the first alone where it is constant
+    std::array<double, 4> volume{};  // that they stand for
+    double error = 0, whole = 0;     // energies
   };
   struct Total {
     double area = 0, square = 0, most = 0, error = 0, whole = 0;
@@ -95,9 +98,11 @@ class Recovery {
           add(mesh_.mid[t][m], 4 * (l[a] * grad[b] + l[b] * grad[a]));
         }
       const ElementMaterial& material = *material_[t];
-      const double mu = material.young_mpa / (2 * (1 + material.poisson)), lambda = 2 * mu * material.poisson / (1 - 2 * material.poisson);
+      const double mu = material.young_mpa / (2 * (1 + material.poisson)),
+                   lambda = 2 * mu * material.poisson / (1 - 2 * material.poisson);
       const double trace = lambda * (h[0][0] + h[1][1] + h[2][2]);
-      e.at[g] = {trace + 2 * mu * h[0][0], trace + 2 * mu * h[1][1], trace + 2 * mu * h[2][2], mu * (h[0][1] + h[1][0]), mu * (h[1][2] + h[2][1]), mu * (h[2][0] + h[0][2])};
+      e.at[g] = {trace + 2 * mu * h[0][0], trace + 2 * mu * h[1][1], trace + 2 * mu * h[2][2],
+                 mu * (h[0][1] + h[1][0]), mu * (h[1][2] + h[2][1]), mu * (h[2][0] + h[0][2])};
       e.volume[g] = determinant / 6 / points_;
     }
     return e;
@@ -115,7 +120,8 @@ class Recovery {
         const std::int32_t node = mesh_.tets[t][k];
         weight[node] += volume;
         for (int g = 0; g < points_; ++g) {
-          const double share = points_ == 1 ? 1 : ((g == k ? 1 : 0) - kFar) / (kNear - kFar);  // linear, through the four points
+          // linear, through the four points
+          const double share = points_ == 1 ? 1 : ((g == k ? 1 : 0) - kFar) / (kNear - kFar);
           for (int c = 0; c < 6; ++c) at[node][c] += volume * share * e.at[g][c];
         }
       }
@@ -149,7 +155,8 @@ class Recovery {
         if (static_cast<std::size_t>(f.tet) < begin || static_cast<std::size_t>(f.tet) >= end) continue;
         std::array<std::int32_t, 3> v;
         for (int k = 0; k < 3; ++k) v[k] = mesh_.tets[f.tet][kTetFaces[f.face][k]];
-        const double area = norm(cross(mesh_.points[v[1]] - mesh_.points[v[0]], mesh_.points[v[2]] - mesh_.points[v[0]])) / 2;
+        const double area =
+            norm(cross(mesh_.points[v[1]] - mesh_.points[v[0]], mesh_.points[v[2]] - mesh_.points[v[0]])) / 2;
         Total& total = totals_[s];
         for (int k = 0; k < 3; ++k) {
           Stress middle{};
@@ -216,6 +223,8 @@ class Recovery {
 
 }  // namespace
 
-StressMeasure recover_stress(const SolverModel& model, const std::vector<Vec3>& displacement_mm) { return Recovery(model, displacement_mm).run(); }
+StressMeasure recover_stress(const SolverModel& model, const std::vector<Vec3>& displacement_mm) {
+  return Recovery(model, displacement_mm).run();
+}
 
 }  // namespace stackmesh

@@ -12,8 +12,10 @@ struct SetStress {
   double mises_rms_mpa = 0;        ///< root of the mean square over its area
   double mises_max_mpa = 0;        ///< at corners
   double displacement_max_mm = 0;  ///< of its nodes
-  double zz_rel = 0;               ///< \cite zienkiewicz1987, energy norm of (recovered - element's stress) over that of the stress, in the elements behind its faces
-  bool held = false;               ///< all of its nodes are held or moved by the first static step
+  /// \cite zienkiewicz1987, energy norm of (recovered - element's stress) over that of the stress, in the elements
+  /// behind its faces
+  double zz_rel = 0;
+  bool held = false;  ///< all of its nodes are held or moved by the first static step
 };
 struct StressMeasure {
   std::vector<SetStress> sets;  ///< those with faces, in the model's order
@@ -21,8 +23,9 @@ struct StressMeasure {
   double mises_rms_mpa = 0;     ///< over all elements
 };
 
-/// Stress out of the displacements of a model's nodes (small strain, linear isotropic materials), recovered at the corners as the mean,
-/// by volume, of what the elements of one label around them say: stress may jump between labels. `zienkiewicz1987`
+/// Stress out of the displacements of a model's nodes (small strain, linear isotropic materials), recovered at the
+/// corners as the mean, by volume, of what the elements of one label around them say: stress may jump between labels.
+/// `zienkiewicz1987`
 /// @throws Error(usage) for a material that is not linear isotropic
 StressMeasure recover_stress(const SolverModel& model, const std::vector<Vec3>& displacement_mm);
 

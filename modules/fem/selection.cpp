@@ -18,7 +18,8 @@ namespace stackmesh {
 namespace {
 
 constexpr const char* grammar =
-    "write --select NAME=box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, plane:x,y,z,nx,ny,nz[,tolerance], normal:nx,ny,nz,degrees, "
+    "write --select NAME=box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, plane:x,y,z,nx,ny,nz[,tolerance], "
+    "normal:nx,ny,nz,degrees, "
     "points:FILE.mrk.json,r, of:LABEL or in:SET, joined by &";
 
 std::string number(double v) {
@@ -27,7 +28,9 @@ std::string number(double v) {
   return text;
 }
 
-std::string at(Vec3 p) { return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")"; }
+std::string at(Vec3 p) {
+  return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")";
+}
 
 std::vector<double> numbers(const std::string& list, std::size_t least, std::size_t most, const std::string& text) {
   std::vector<double> values;
@@ -37,12 +40,14 @@ std::vector<double> numbers(const std::string& list, std::size_t least, std::siz
     const std::string word = list.substr(begin, end - begin);
     char* rest = nullptr;
     const double v = std::strtod(word.c_str(), &rest);
-    if (word.empty() || *rest != '\0' || !std::isfinite(v)) fail_usage("'" + word + "' is not a number", "--select " + text, grammar);
+    if (word.empty() || *rest != '\0' || !std::isfinite(v))
+      fail_usage("'" + word + "' is not a number", "--select " + text, grammar);
     values.push_back(v);
     begin = end + 1;
   }
   if (values.size() < least || values.size() > most)
-    fail_usage(std::to_string(values.size()) + " numbers where " + std::to_string(least) + (most > least ? " or more" : "") + " are needed",
+    fail_usage(std::to_string(values.size()) + " numbers where " + std::to_string(least) +
+                   (most > least ? " or more" : "") + " are needed",
                "--select " + text, grammar);
   return values;
 }
@@ -64,7 +69,8 @@ std::vector<Vec3> read_markups(const std::string& path, Space of_mesh) {
       if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
         fail_input("the markups are in an unknown frame '" + system + "'", path, "save them from Slicer as LPS or RAS");
       const Space space = system == "RAS" || system == "0" ? Space::ras : Space::lps;
-      if (markup.contains("coordinateUnits") && markup.at("coordinateUnits").is_string() && markup.at("coordinateUnits") != "mm")
+      if (markup.contains("coordinateUnits") && markup.at("coordinateUnits").is_string() &&
+          markup.at("coordinateUnits") != "mm")
         fail_input("the markups are not in mm", path, "save them in mm");
       for (const auto& point : markup.at("controlPoints")) {
         if (point.value("positionStatus", std::string("defined")) != "defined") continue;
@@ -92,7 +98,8 @@ Label label_named(const std::string& name, const SelectionContext& c, const std:
   for (const LabelInfo& l : c.labels)
     if (l.name == name || l.name == sanitised_name(name) || std::to_string(l.number) == name) return l.number;
   std::string known;
-  for (const LabelInfo& l : c.labels) known += (known.empty() ? "" : ", ") + std::to_string(l.number) + " (" + l.name + ")";
+  for (const LabelInfo& l : c.labels)
+    known += (known.empty() ? "" : ", ") + std::to_string(l.number) + " (" + l.name + ")";
   fail_input("label '" + name + "' is not in the mesh", "--select " + text, "choose among: " + known.substr(0, 300));
 }
 
@@ -129,7 +136,8 @@ Criterion make(const std::string& word, const SelectionContext& c, const std::st
   } else if (kind == "normal") {
     const auto v = numbers(rest, 4, 4, text);
     const Vec3 n = unit({v[0], v[1], v[2]}, text);
-    if (v[3] <= 0 || v[3] > 180) fail_usage("the angle is not above 0 and at most 180 degrees", "--select " + text, grammar);
+    if (v[3] <= 0 || v[3] > 180)
+      fail_usage("the angle is not above 0 and at most 180 degrees", "--select " + text, grammar);
     out.unit = "degrees";
     out.miss = [=, &faces](std::int32_t f) {
       return std::acos(std::clamp(dot(n, faces[f].normal), -1.0, 1.0)) * 180 / M_PI - v[3];
@@ -151,7 +159,9 @@ Criterion make(const std::string& word, const SelectionContext& c, const std::st
     out.miss = [=, &faces](std::int32_t f) { return faces[f].in == label ? 0.0 : 1.0; };
   } else if (kind == "in") {
     const std::vector<std::int32_t>* set = c.set(rest);
-    if (set == nullptr) fail_input("set '" + rest + "' is not in the model", "--select " + text, "the nearest are " + nearest_names(rest, c.set_names()));
+    if (set == nullptr)
+      fail_input("set '" + rest + "' is not in the model", "--select " + text,
+                 "the nearest are " + nearest_names(rest, c.set_names()));
     std::vector<char> member(faces.size(), 0);
     for (const std::int32_t f : *set) member[f] = 1;
     out.can_rank = false;
@@ -174,7 +184,8 @@ Selection read_selection(const std::string& text, const SelectionContext& c) {
   Selection s;
   const std::string& name = s.name = text.substr(0, equals);
   if (sanitised_name(name) != name || name.size() > 60)
-    fail_usage("'" + name + "' is no name that solvers take", "--select " + text, "use letters, digits and _, a letter first, at most 60");
+    fail_usage("'" + name + "' is no name that solvers take", "--select " + text,
+               "use letters, digits and _, a letter first, at most 60");
   std::size_t begin = equals + 1;
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find('&', begin), text.size());
@@ -202,7 +213,8 @@ std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string
     const auto f = static_cast<std::int32_t>(i);
     if (!sided && c.faces[i].out != 0 && c.faces[i].out < c.faces[i].in) continue;
     open.push_back(f);
-    if (std::all_of(criteria.begin(), criteria.end(), [&](const Criterion& k) { return k.miss(f) <= 0; })) chosen.push_back(f);
+    if (std::all_of(criteria.begin(), criteria.end(), [&](const Criterion& k) { return k.miss(f) <= 0; }))
+      chosen.push_back(f);
   }
   if (!chosen.empty()) return {name, chosen};
 
@@ -213,7 +225,8 @@ std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string
     double least = std::numeric_limits<double>::max();
     std::int32_t best = -1;
     for (const std::int32_t f : open) {
-      const bool others = std::all_of(criteria.begin(), criteria.end(), [&](const Criterion& o) { return &o == &k || o.miss(f) <= 0; });
+      const bool others =
+          std::all_of(criteria.begin(), criteria.end(), [&](const Criterion& o) { return &o == &k || o.miss(f) <= 0; });
       const double miss = others ? k.miss(f) : std::numeric_limits<double>::max();
       if (miss > 0 && miss < least) {
         least = miss;
@@ -221,7 +234,8 @@ std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string
       }
     }
     if (best >= 0)
-      nearest += (nearest.empty() ? "" : "; or ") + ("the nearest face misses " + k.kind + " by " + number(least) + " " + k.unit + ", at ") +
+      nearest += (nearest.empty() ? "" : "; or ") +
+                 ("the nearest face misses " + k.kind + " by " + number(least) + " " + k.unit + ", at ") +
                  at(c.faces[best].centre) + " of " + c.place_of(best);
   }
   if (nearest.empty()) nearest = "no face meets any one of its criteria together with the others; loosen them";

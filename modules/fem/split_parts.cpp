@@ -11,7 +11,8 @@ std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& par
   constexpr int nobody = -1;
   std::vector<int> owner(mesh.points.size(), nobody);
   for (std::size_t t = 0; t < mesh.elements(); ++t)
-    each_node(mesh, t, [&](std::int32_t& v) { owner[v] = owner[v] == nobody ? part_of[t] : std::min(owner[v], part_of[t]); });
+    each_node(mesh, t,
+              [&](std::int32_t& v) { owner[v] = owner[v] == nobody ? part_of[t] : std::min(owner[v], part_of[t]); });
   std::vector<std::int32_t> original(mesh.points.size());
   std::iota(original.begin(), original.end(), 0);
   std::map<std::pair<std::int32_t, int>, std::int32_t> copies;  // ordered: numbers do not depend on the tets' order

@@ -6,8 +6,8 @@
 
 namespace stackmesh {
 
-/// Gives each part its own copy of every node that several parts share; within a part nodes stay shared. The part with the
-/// smallest number keeps the original.
+/// Gives each part its own copy of every node that several parts share; within a part nodes stay shared. The part with
+/// the smallest number keeps the original.
 /// @param part_of one number from 0 per tet
 /// @return for each node of the new mesh the node that it was
 std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& part_of);

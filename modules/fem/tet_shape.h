@@ -6,7 +6,8 @@
 
 namespace stackmesh {
 
-/// The position of a point of an element, and the determinant of the map there (6 times the volume, where it is constant).
+/// The position of a point of an element, and the determinant of the map there (6 times the volume, where it is
+/// constant).
 struct TetPoint {
   Vec3 position;
   double determinant = 0;
@@ -31,9 +32,11 @@ inline TetPoint tet_point(const TetMesh& mesh, std::size_t tet, const std::array
   const auto& t = mesh.tets[tet];
   const std::array<Vec3, 4> d = tet_derivatives(mesh, tet, l);
   TetPoint out;
-  for (int k = 0; k < 4; ++k) out.position = out.position + (mesh.mid.empty() ? l[k] : l[k] * (2 * l[k] - 1)) * mesh.points[t[k]];
+  for (int k = 0; k < 4; ++k)
+    out.position = out.position + (mesh.mid.empty() ? l[k] : l[k] * (2 * l[k] - 1)) * mesh.points[t[k]];
   if (!mesh.mid.empty())
-    for (int e = 0; e < 6; ++e) out.position = out.position + (4 * l[kTetEdges[e][0]] * l[kTetEdges[e][1]]) * mesh.points[mesh.mid[tet][e]];
+    for (int e = 0; e < 6; ++e)
+      out.position = out.position + (4 * l[kTetEdges[e][0]] * l[kTetEdges[e][1]]) * mesh.points[mesh.mid[tet][e]];
   out.determinant = dot(cross(d[1] - d[0], d[2] - d[0]), d[3] - d[0]);
   return out;
 }

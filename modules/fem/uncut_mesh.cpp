@@ -7,8 +7,9 @@
 namespace stackmesh {
 namespace {
 
-/// The ten nodes of the tet that eight were cut from: its corners, and the middles of its edges (kTetEdges). The child at corner k
-/// has its k-th corner there, and the middles of the edges that end there in the places of their other ends.
+/// The ten nodes of the tet that eight were cut from: its corners, and the middles of its edges (kTetEdges). The child
+/// at corner k has its k-th corner there, and the middles of the edges that end there in the places of their other
+/// ends.
 std::array<std::int32_t, 10> nodes_before(const TetMesh& mesh, std::size_t block) {
   std::array<std::int32_t, 10> node;
   const auto* child = &mesh.tets[8 * block];
@@ -16,7 +17,9 @@ std::array<std::int32_t, 10> nodes_before(const TetMesh& mesh, std::size_t block
   for (int e = 0; e < 6; ++e) {
     const int a = kTetEdges[e][0], b = kTetEdges[e][1];
     node[4 + e] = child[a][b];
-    if (child[b][a] != node[4 + e]) fail_internal("the tetrahedra from " + std::to_string(8 * block + 1) + " on were not cut from one", "solver model");
+    if (child[b][a] != node[4 + e])
+      fail_internal("the tetrahedra from " + std::to_string(8 * block + 1) + " on were not cut from one",
+                    "solver model");
   }
   return node;
 }
@@ -24,7 +27,8 @@ std::array<std::int32_t, 10> nodes_before(const TetMesh& mesh, std::size_t block
 }  // namespace
 
 TetMesh uncut_mesh(const TetMesh& mesh) {
-  if (mesh.tets.size() % 8 != 0 || mesh.faces.size() % 4 != 0 || !mesh.wedges.empty()) fail_internal("the mesh was not cut into eight", "solver model");
+  if (mesh.tets.size() % 8 != 0 || mesh.faces.size() % 4 != 0 || !mesh.wedges.empty())
+    fail_internal("the mesh was not cut into eight", "solver model");
   TetMesh out;
   out.space = mesh.space;
   out.points = mesh.points;
@@ -41,9 +45,11 @@ TetMesh uncut_mesh(const TetMesh& mesh) {
   return out;
 }
 
-std::vector<std::int32_t> uncut_faces(const TetMesh& mesh, const std::vector<BoundaryFace>& faces, const std::vector<BoundaryFace>& uncut) {
+std::vector<std::int32_t> uncut_faces(const TetMesh& mesh, const std::vector<BoundaryFace>& faces,
+                                      const std::vector<BoundaryFace>& uncut) {
   std::vector<std::int32_t> before(mesh.tets.size() / 2, -1);  // by tet and side
-  for (std::size_t i = 0; i < uncut.size(); ++i) before[4 * uncut[i].at.tet + uncut[i].at.face] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < uncut.size(); ++i)
+    before[4 * uncut[i].at.tet + uncut[i].at.face] = static_cast<std::int32_t>(i);
   std::vector<std::int32_t> out;
   out.reserve(faces.size());
   for (const BoundaryFace& f : faces) {
@@ -58,7 +64,9 @@ std::vector<std::int32_t> uncut_faces(const TetMesh& mesh, const std::vector<Bou
       };
       if (std::all_of(f.v.begin(), f.v.end(), on_side)) from = before[4 * block + side];
     }
-    if (from < 0) fail_internal("a face of element " + std::to_string(f.at.tet + 1) + " lies on none of the mesh before it was cut", "solver model");
+    if (from < 0)
+      fail_internal("a face of element " + std::to_string(f.at.tet + 1) + " lies on none of the mesh before it was cut",
+                    "solver model");
     out.push_back(from);
   }
   return out;

@@ -3,7 +3,6 @@
 #include <dcmtk/dcmdata/dcdeftag.h>
 #include <dcmtk/dcmdata/dcxfer.h>
 #include <dcmtk/oflog/oflog.h>
-
 #include <sys/stat.h>
 
 #include <charconv>
@@ -25,7 +24,8 @@ constexpr const char* again = "copy or export the file again";
 void silence() {
   static const bool done = [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-    // Values of more than 64 kB do not fit explicit VRs such as DS and are stored as UN (PS3.5, 6.2.2): read by the dictionary.
+    // Values of more than 64 kB do not fit explicit VRs such as DS and are stored as UN (PS3.5, 6.2.2): read by the
+    // dictionary.
     dcmEnableUnknownVRConversion.set(OFTrue);
     return true;
   }();
@@ -37,7 +37,11 @@ std::string clean(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const auto u = static_cast<unsigned char>(text[i]);
-    const std::size_t length = u < 0x80 ? 1 : u >= 0xc2 && u < 0xe0 ? 2 : u >= 0xe0 && u < 0xf0 ? 3 : u >= 0xf0 && u < 0xf5 ? 4 : 0;
+    const std::size_t length = u < 0x80                ? 1
+                               : u >= 0xc2 && u < 0xe0 ? 2
+                               : u >= 0xe0 && u < 0xf0 ? 3
+                               : u >= 0xf0 && u < 0xf5 ? 4
+                                                       : 0;
     bool good = length > 0 && i + length <= text.size() && u >= 0x20 && u != 0x7f;
     for (std::size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xc0) == 0x80;
     if (good) out += text.substr(i, length);
@@ -68,11 +72,13 @@ std::unique_ptr<DcmFileFormat> load_dicom(const std::string& path) {
   silence();
   std::ifstream probe(path, std::ios::binary);
   if (!probe) fail_input("cannot open the file", path, "check that you may read it");
-  if (dicom_nesting(path) > kDeepest) fail_input("the DICOM file's sequences are nested more than " + std::to_string(kDeepest) + " deep", path, again);
+  if (dicom_nesting(path) > kDeepest)
+    fail_input("the DICOM file's sequences are nested more than " + std::to_string(kDeepest) + " deep", path, again);
   auto file = std::make_unique<DcmFileFormat>();
   const OFCondition status = file->loadFile(path.c_str());
   if (status.bad()) fail_input("the DICOM file is damaged or truncated", path, again);
-  if (file->getDataset() == nullptr || file->getDataset()->card() == 0) fail_input("this is no DICOM file, or it is damaged", path, again);
+  if (file->getDataset() == nullptr || file->getDataset()->card() == 0)
+    fail_input("this is no DICOM file, or it is damaged", path, again);
   // Code extensions are text_of()'s; where the conversion fails, clean() sees to it.
   if (!needs_code_extensions(character_sets_of(*file->getDataset()))) file->getDataset()->convertToUTF8();
   return file;
@@ -173,7 +179,9 @@ std::optional<double> number_of(DcmItem& item, const DcmTagKey& tag, const std::
 std::optional<Vec3> vector_of(DcmItem& item, const DcmTagKey& tag, const std::string& where) {
   const std::vector<double> n = numbers_of(item, tag, where);
   if (n.empty()) return std::nullopt;
-  if (n.size() != 3) fail_input("the field " + field_name(tag) + " holds " + std::to_string(n.size()) + " numbers in place of 3", where, again);
+  if (n.size() != 3)
+    fail_input("the field " + field_name(tag) + " holds " + std::to_string(n.size()) + " numbers in place of 3", where,
+               again);
   return Vec3{n[0], n[1], n[2]};
 }
 

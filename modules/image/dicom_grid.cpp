@@ -22,11 +22,13 @@ DicomGrid::DicomGrid(const std::vector<double>& o, const std::vector<double>& pi
   pixel_x_mm = pixel_spacing[1];
 }
 
-void DicomGrid::require_same(const std::vector<double>& o, const std::vector<double>& pixel_spacing, const std::string& where) const {
+void DicomGrid::require_same(const std::vector<double>& o, const std::vector<double>& pixel_spacing,
+                             const std::string& where) const {
   const Vec3 a{o[0], o[1], o[2]}, b{o[3], o[4], o[5]};
   if (norm(a - x) > 1e-3 || norm(b - y) > 1e-3)
     fail_input("the frames or slices lie in different directions", where, "give images of one direction");
-  if (std::abs(pixel_spacing[0] - pixel_y_mm) > 1e-4 * pixel_y_mm || std::abs(pixel_spacing[1] - pixel_x_mm) > 1e-4 * pixel_x_mm)
+  if (std::abs(pixel_spacing[0] - pixel_y_mm) > 1e-4 * pixel_y_mm ||
+      std::abs(pixel_spacing[1] - pixel_x_mm) > 1e-4 * pixel_x_mm)
     fail_input("the frames or slices have different pixel sizes", where, "give images of one pixel size");
 }
 

@@ -16,7 +16,8 @@ struct DicomGrid {
   DicomGrid(const std::vector<double>& orientation, const std::vector<double>& pixel_spacing, const std::string& where);
 
   /// @throws Error(input) unless another frame has the same directions and pixel size.
-  void require_same(const std::vector<double>& orientation, const std::vector<double>& pixel_spacing, const std::string& where) const;
+  void require_same(const std::vector<double>& orientation, const std::vector<double>& pixel_spacing,
+                    const std::string& where) const;
   /// @throws Error(input) unless a frame's first pixel lies above (or beneath) that of another frame.
   void require_above(Vec3 first, Vec3 position, const std::string& where) const;
   double height(Vec3 position) const { return dot(position, normal); }

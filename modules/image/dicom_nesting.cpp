@@ -22,7 +22,8 @@ constexpr std::uint32_t kUndefined = 0xffffffffu;
 /// Bytes one after another, of a file or of the raw deflate stream that its data set may be.
 class Bytes {
  public:
-  explicit Bytes(const std::string& path) : file_(std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return f == nullptr ? 0 : std::fclose(f); }) {}
+  explicit Bytes(const std::string& path)
+      : file_(std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return f == nullptr ? 0 : std::fclose(f); }) {}
   ~Bytes() {
     if (deflated_) inflateEnd(&stream_);
   }
@@ -39,7 +40,8 @@ class Bytes {
   bool skip(std::uint64_t count) {
     if (!deflated_) {
       position_ += count;
-      return fseeko(file_.get(), static_cast<off_t>(std::min<std::uint64_t>(count, 1u << 31)), SEEK_CUR) == 0 && count <= (1u << 31);
+      return fseeko(file_.get(), static_cast<off_t>(std::min<std::uint64_t>(count, 1u << 31)), SEEK_CUR) == 0 &&
+             count <= (1u << 31);
     }
     unsigned char rest[4096];
     for (; count > 0; count -= std::min<std::uint64_t>(count, sizeof rest))
@@ -86,7 +88,8 @@ class NestingReader {
     const bool marked = in_.read(start, sizeof start) && std::memcmp(start + 128, "DICM", 4) == 0;
     if (!marked) return 0;  // a bare data set: see below
     if (!read_meta()) return 0;
-    while (deepest_ <= kDeepest && read_element()) {}
+    while (deepest_ <= kDeepest && read_element()) {
+    }
     return deepest_;
   }
 
@@ -94,7 +97,8 @@ class NestingReader {
   int run_bare() {
     if (!in_.is_open()) return 0;
     guess_explicit();
-    while (deepest_ <= kDeepest && read_element()) {}
+    while (deepest_ <= kDeepest && read_element()) {
+    }
     return deepest_;
   }
 
@@ -156,14 +160,16 @@ class NestingReader {
 
   static bool is_long(const unsigned char* vr) {
     static const char* const longs[] = {"OB", "OW", "OF", "OD", "OL", "OV", "UN", "UT", "UC", "UR", "SQ", "SV", "UV"};
-    static const char* const shorts[] = {"AE", "AS", "AT", "CS", "DA", "DS", "DT", "FL", "FD", "IS", "LO", "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US"};
+    static const char* const shorts[] = {"AE", "AS", "AT", "CS", "DA", "DS", "DT", "FL", "FD", "IS", "LO",
+                                         "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US"};
     const auto is = [&](const char* name) { return vr[0] == name[0] && vr[1] == name[1]; };
     if (std::any_of(std::begin(longs), std::end(longs), is)) return true;
     return std::isupper(vr[0]) && std::isupper(vr[1]) && !std::any_of(std::begin(shorts), std::end(shorts), is);
   }
 
   bool open(Open::Kind kind, std::uint32_t length, bool implicit) {
-    open_.push_back({kind, length == kUndefined ? std::numeric_limits<std::uint64_t>::max() : in_.position() + length, implicit});
+    open_.push_back(
+        {kind, length == kUndefined ? std::numeric_limits<std::uint64_t>::max() : in_.position() + length, implicit});
     if (kind == Open::sequence) deepest_ = std::max(deepest_, ++sequences_);
     return true;
   }
@@ -178,7 +184,8 @@ class NestingReader {
     unsigned char head[8];
     if (!peek(head)) return false;
     pending_ = 0;
-    const auto group = static_cast<std::uint16_t>(number(head, 2)), element = static_cast<std::uint16_t>(number(head + 2, 2));
+    const auto group = static_cast<std::uint16_t>(number(head, 2)),
+               element = static_cast<std::uint16_t>(number(head + 2, 2));
     if (group == 0xfffe) {
       const std::uint32_t length = number(head + 4, 4);
       if (element == 0xe000) {
@@ -202,7 +209,8 @@ class NestingReader {
     }
     if (group == 0x7fe0 && element == 0x10 && length == kUndefined) return open(Open::fragments, length, implicit);
     const bool by_dictionary = (implicit || vr == "UN") && DcmTag(group, element).getEVR() == EVR_SQ;
-    if (vr == "SQ" || length == kUndefined || by_dictionary) return open(Open::sequence, length, implicit || vr == "UN");
+    if (vr == "SQ" || length == kUndefined || by_dictionary)
+      return open(Open::sequence, length, implicit || vr == "UN");
     return in_.skip(length);
   }
 

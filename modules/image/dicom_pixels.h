@@ -14,7 +14,8 @@ struct DicomPixels {
 };
 
 /// Pixels as they are come through DCMTK;
-/// compressed ones go to GDCM in a file of their own that holds nothing else, as GDCM ends the program on damaged headers.
+/// compressed ones go to GDCM in a file of their own that holds nothing else, as GDCM ends the program on damaged
+/// headers.
 /// @throws Error(input) naming the file, and the transfer syntax where it cannot be decoded
 DicomPixels read_dicom_pixels(const std::string& path, int rows, int columns);
 

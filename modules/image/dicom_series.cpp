@@ -83,7 +83,9 @@ class SeriesReader {
   }
 
   /// The rescaled values of one slice.
-  std::vector<double> read(std::size_t slice) const { return read_dicom_pixels(slices_[slice].file, rows_, columns_).rescaled(); }
+  std::vector<double> read(std::size_t slice) const {
+    return read_dicom_pixels(slices_[slice].file, rows_, columns_).rescaled();
+  }
   /// The same as labels: where a slope has made them less than whole, they are rounded.
   std::vector<double> read_labels(std::size_t slice) {
     DicomPixels pixels = read_dicom_pixels(slices_[slice].file, rows_, columns_);
@@ -99,13 +101,15 @@ class SeriesReader {
   void find_slices() {
     std::error_code ignored;
     const bool is_file = !fs::is_directory(path_, ignored);
-    const std::string folder = is_file ? (fs::path(path_).has_parent_path() ? fs::path(path_).parent_path().string() : ".") : path_;
+    const std::string folder =
+        is_file ? (fs::path(path_).has_parent_path() ? fs::path(path_).parent_path().string() : ".") : path_;
     std::map<std::string, std::vector<std::string>> by_series;
     if (is_file) {
       const auto header = load_dicom_header(path_);
       if (header == nullptr) refuse_dicom(path_);
       const std::string own = text_of(*header->getDataset(), DCM_SeriesInstanceUID);
-      if (!wanted_.empty() && own != wanted_) fail_input("the file belongs to series " + own, path_, "leave --series out, or give the folder");
+      if (!wanted_.empty() && own != wanted_)
+        fail_input("the file belongs to series " + own, path_, "leave --series out, or give the folder");
       wanted_ = own;
     }
     for (const std::string& file : files_in(folder)) {
@@ -113,11 +117,14 @@ class SeriesReader {
       const auto header = load_dicom_header(file);
       by_series[text_of(*header->getDataset(), DCM_SeriesInstanceUID)].push_back(file);
     }
-    if (by_series.empty()) fail_input("no DICOM image", path_, "give the folder of a DICOM series, or one of its files");
+    if (by_series.empty())
+      fail_input("no DICOM image", path_, "give the folder of a DICOM series, or one of its files");
     if (by_series.size() > 1 && wanted_.empty() && !is_file) {
       std::string list;
-      for (const auto& [uid, files] : by_series) list += (list.empty() ? "" : ", ") + uid + " (" + std::to_string(files.size()) + " files)";
-      fail_input("the folder holds " + std::to_string(by_series.size()) + " series: " + list, path_, "choose one with --series UID, or name one of its files");
+      for (const auto& [uid, files] : by_series)
+        list += (list.empty() ? "" : ", ") + uid + " (" + std::to_string(files.size()) + " files)";
+      fail_input("the folder holds " + std::to_string(by_series.size()) + " series: " + list, path_,
+                 "choose one with --series UID, or name one of its files");
     }
     const auto found = wanted_.empty() ? by_series.begin() : by_series.find(wanted_);
     if (found == by_series.end()) {
@@ -132,13 +139,16 @@ class SeriesReader {
     const auto header = load_dicom_header(file);
     DcmDataset& data = *header->getDataset();
     if (number_of(data, DCM_NumberOfFrames, file).value_or(1) > 1)
-      fail_input("a file of the series holds several frames", file, "convert it to one file a slice, or to NIfTI or NRRD");
+      fail_input("a file of the series holds several frames", file,
+                 "convert it to one file a slice, or to NIfTI or NRRD");
     const std::vector<double> orientation = numbers_of(data, DCM_ImageOrientationPatient, file);
     const std::vector<double> pixel = numbers_of(data, DCM_PixelSpacing, file);
     const std::optional<Vec3> position = vector_of(data, DCM_ImagePositionPatient, file);
     if (orientation.size() != 6 || pixel.size() != 2 || !position)
       fail_input("a slice has no place: its position, orientation or pixel spacing is missing", file, again);
-    const auto length = [&](const DcmTagKey& tag) { return static_cast<int>(std::clamp(number_of(data, tag, file).value_or(0), 0.0, 65535.0)); };
+    const auto length = [&](const DcmTagKey& tag) {
+      return static_cast<int>(std::clamp(number_of(data, tag, file).value_or(0), 0.0, 65535.0));
+    };
     const int rows = length(DCM_Rows), columns = length(DCM_Columns);
     if (rows < 1 || columns < 1) fail_input("a slice has no rows or columns", file, again);
     if (slices_.empty()) {
@@ -148,7 +158,9 @@ class SeriesReader {
       for (const DcmTagKey& tag : {DCM_SpacingBetweenSlices, DCM_SliceThickness})
         if (alone_mm_ <= 0) alone_mm_ = std::abs(number_of(data, tag, file).value_or(0));
     } else {
-      if (rows != rows_ || columns != columns_) fail_input("the slices of the series differ in size", file + " against " + slices_[0].file, "give slices of one size");
+      if (rows != rows_ || columns != columns_)
+        fail_input("the slices of the series differ in size", file + " against " + slices_[0].file,
+                   "give slices of one size");
       grid_.require_same(orientation, pixel, file);
       grid_.require_above(slices_[0].position, *position, file);
     }
@@ -156,7 +168,8 @@ class SeriesReader {
   }
 
   void sort_slices() {
-    std::stable_sort(slices_.begin(), slices_.end(), [](const SliceFile& a, const SliceFile& b) { return a.height < b.height; });
+    std::stable_sort(slices_.begin(), slices_.end(),
+                     [](const SliceFile& a, const SliceFile& b) { return a.height < b.height; });
     std::vector<SliceFile> kept;
     std::vector<std::string> twice;
     for (SliceFile& s : slices_) {
@@ -164,13 +177,17 @@ class SeriesReader {
       else kept.push_back(std::move(s));
     }
     if (kept.size() == 1 && !twice.empty())
-      fail_input("all " + std::to_string(slices_.size()) + " slices of the series have the same position, at height " + list_heights({kept[0].height}) + " mm", path_,
-                 "export the series with its true positions (ImagePositionPatient)");
+      fail_input("all " + std::to_string(slices_.size()) + " slices of the series have the same position, at height " +
+                     list_heights({kept[0].height}) + " mm",
+                 path_, "export the series with its true positions (ImagePositionPatient)");
     if (2 * twice.size() >= kept.size() && !twice.empty() && kept.size() > 1)
-      fail_input("the series holds several images at each position (times, echoes or copies), such as " + list_files(twice), path_,
-                 "put one image of each position into a folder");
+      fail_input(
+          "the series holds several images at each position (times, echoes or copies), such as " + list_files(twice),
+          path_, "put one image of each position into a folder");
     if (!twice.empty())
-      warnings_.push_back(warning_at(WarningCode::repeated, path_, "duplicated slices, of which the first is used: " + list_files(twice) + " are left out"));
+      warnings_.push_back(
+          warning_at(WarningCode::repeated, path_,
+                     "duplicated slices, of which the first is used: " + list_files(twice) + " are left out"));
     slices_ = std::move(kept);
   }
 
@@ -185,7 +202,8 @@ class SeriesReader {
     std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
     const double usual = sorted[sorted.size() / 2], smallest = *std::min_element(gaps.begin(), gaps.end());
     const double span = slices_.back().height - slices_[0].height;
-    even_ = std::all_of(gaps.begin(), gaps.end(), [&](double g) { return std::abs(g - usual) <= std::max(0.01, 0.01 * usual); });
+    even_ = std::all_of(gaps.begin(), gaps.end(),
+                        [&](double g) { return std::abs(g - usual) <= std::max(0.01, 0.01 * usual); });
     if (even_) {
       gap_mm_ = span / static_cast<double>(n - 1);
       return;
@@ -197,14 +215,19 @@ class SeriesReader {
       for (int m = 1; m < std::round(k) && m < 100000; ++m) lost.push_back(slices_[i].height + m * usual);
     }
     if (multiples)
-      warnings_.push_back(warning_at(WarningCode::missing_slices, path_, "missing slices at heights " + list_heights(lost) + " mm (gap " + list_heights({usual}) +
-                          " mm); they are filled from their neighbours"));
+      warnings_.push_back(warning_at(WarningCode::missing_slices, path_,
+                                     "missing slices at heights " + list_heights(lost) + " mm (gap " +
+                                         list_heights({usual}) + " mm); they are filled from their neighbours"));
     else
-      warnings_.push_back(warning_at(WarningCode::missing_slices, path_, "the gaps of the slices are uneven, from " + list_heights({smallest}) + " to " +
-                          list_heights({*std::max_element(gaps.begin(), gaps.end())}) + " mm; the slices are taken to an even grid by their true positions"));
+      warnings_.push_back(warning_at(WarningCode::missing_slices, path_,
+                                     "the gaps of the slices are uneven, from " + list_heights({smallest}) + " to " +
+                                         list_heights({*std::max_element(gaps.begin(), gaps.end())}) +
+                                         " mm; the slices are taken to an even grid by their true positions"));
     const double wanted = multiples ? usual : smallest;
     const double count = std::round(span / wanted) + 1;
-    if (count > 64.0 * static_cast<double>(n) + 256) fail_input("the gaps of the slices differ too much for an even grid", path_, "resample the series to even slices");
+    if (count > 64.0 * static_cast<double>(n) + 256)
+      fail_input("the gaps of the slices differ too much for an even grid", path_,
+                 "resample the series to even slices");
     count_ = static_cast<int>(count);
     gap_mm_ = span / (count - 1);
   }
@@ -234,13 +257,23 @@ void take_grid(SeriesReader& series, Volume& volume) {
 DicomContent dicom_content(const std::string& path) {
   DicomContent content;
   std::error_code ignored;
-  const std::vector<std::string> files = fs::is_directory(path, ignored) ? files_in(path) : std::vector<std::string>{path};
+  const std::vector<std::string> files =
+      fs::is_directory(path, ignored) ? files_in(path) : std::vector<std::string>{path};
   for (const std::string& file : files) switch (dicom_kind(file)) {
-      case DicomKind::structure_set: content.structure_sets.push_back(file); break;
-      case DicomKind::segmentation: content.segmentations.push_back(file); break;
-      case DicomKind::image: content.images.push_back(file); break;
-      case DicomKind::other: content.others.push_back(file); break;
-      case DicomKind::none: break;
+      case DicomKind::structure_set:
+        content.structure_sets.push_back(file);
+        break;
+      case DicomKind::segmentation:
+        content.segmentations.push_back(file);
+        break;
+      case DicomKind::image:
+        content.images.push_back(file);
+        break;
+      case DicomKind::other:
+        content.others.push_back(file);
+        break;
+      case DicomKind::none:
+        break;
     }
   return content;
 }
@@ -248,7 +281,8 @@ DicomContent dicom_content(const std::string& path) {
 std::string label_object(const DicomContent& content, const std::string& path) {
   std::vector<std::string> all = content.structure_sets;
   all.insert(all.end(), content.segmentations.begin(), content.segmentations.end());
-  if (all.size() > 1) fail_input("several structure sets or segmentations: " + list_files(all), path, "name one of these files");
+  if (all.size() > 1)
+    fail_input("several structure sets or segmentations: " + list_files(all), path, "name one of these files");
   return all.empty() ? "" : all[0];
 }
 
@@ -258,7 +292,8 @@ LabelVolume read_series_labels(const std::string& path, const std::string& serie
   take_grid(series, volume);
   const std::size_t pixels = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
   series.read(0);  // its pixels are there before memory for all of them is taken
-  require_memory((2 * static_cast<std::size_t>(volume.size[2]) + 8) * pixels, "the labels of " + std::to_string(volume.size[2]) + " slices", path, "crop the series");
+  require_memory((2 * static_cast<std::size_t>(volume.size[2]) + 8) * pixels,
+                 "the labels of " + std::to_string(volume.size[2]) + " slices", path, "crop the series");
   volume.voxels.resize(pixels * volume.size[2]);
   Palette palette;
   for (int k = 0; k < volume.size[2]; ++k) {
@@ -266,8 +301,9 @@ LabelVolume read_series_labels(const std::string& path, const std::string& serie
     const std::size_t nearest = t <= 0.5 ? low : low + 1;
     const std::vector<double> values = series.read_labels(nearest);
     palette.convert(values.data(), volume.voxels.data() + pixels * k, pixels, [&](std::size_t i) {
-      return std::pair<std::string, std::string>(series.file_of(nearest), "pixel (" + std::to_string(i % volume.size[0]) + ", " +
-                                                                              std::to_string(i / volume.size[0]) + ")");
+      return std::pair<std::string, std::string>(
+          series.file_of(nearest),
+          "pixel (" + std::to_string(i % volume.size[0]) + ", " + std::to_string(i / volume.size[0]) + ")");
     });
   }
   palette.finish(volume, path);
@@ -281,7 +317,8 @@ IntensityVolume read_series_image(const std::string& path, const std::string& se
   take_grid(series, image);
   const std::size_t pixels = static_cast<std::size_t>(image.size[0]) * image.size[1];
   series.read(0);
-  require_memory((sizeof(float) * static_cast<std::size_t>(image.size[2]) + 24) * pixels, "the intensities of " + std::to_string(image.size[2]) + " slices", path, "crop the series");
+  require_memory((sizeof(float) * static_cast<std::size_t>(image.size[2]) + 24) * pixels,
+                 "the intensities of " + std::to_string(image.size[2]) + " slices", path, "crop the series");
   image.values.resize(pixels * image.size[2]);
   std::map<std::size_t, std::vector<double>> read;  // the slices that the next ones need
   for (int k = 0; k < image.size[2]; ++k) {
@@ -290,7 +327,8 @@ IntensityVolume read_series_image(const std::string& path, const std::string& se
     for (std::size_t s = low; s <= low + (t > 0 ? 1 : 0); ++s)
       if (read.count(s) == 0) read[s] = series.read(s);
     const std::vector<double>&a = read[low], &b = t > 0 ? read[low + 1] : a;
-    for (std::size_t i = 0; i < pixels; ++i) image.values[pixels * k + i] = static_cast<float>(a[i] + t * (b[i] - a[i]));
+    for (std::size_t i = 0; i < pixels; ++i)
+      image.values[pixels * k + i] = static_cast<float>(a[i] + t * (b[i] - a[i]));
   }
   return image;
 }

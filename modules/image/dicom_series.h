@@ -17,7 +17,8 @@ struct DicomContent {
 /// Looks into a folder's files, or at one file. Folders are not searched deeper.
 DicomContent dicom_content(const std::string& path);
 
-/// The one structure set or segmentation in it, "" where there is none. @throws Error(input) naming them where there are several
+/// The one structure set or segmentation in it, "" where there is none. @throws Error(input) naming them where there
+/// are several
 std::string label_object(const DicomContent& content, const std::string& path);
 
 /// Reads a series of slices as labels: whole numbers after rescaling. `path` is its folder, or any one of its files;

@@ -7,7 +7,8 @@
 namespace stackmesh {
 namespace {
 
-/// A character set that escape sequences switch to. The two halves of the code table, bytes below and from 0x80, are switched apart.
+/// A character set that escape sequences switch to. The two halves of the code table, bytes below and from 0x80, are
+/// switched apart.
 struct CodeSet {
   const char* escape;    ///< behind ESC
   const char* term;      ///< the defined term of a high one
@@ -49,8 +50,8 @@ std::string to_utf8(std::string character, const char* encoding) {
   return good ? std::string(out, to) : "?";
 }
 
-/// The set of the high half before any switch: the first that is declared. (The standard wants a switch to those behind the first
-/// value, which some programs leave out.)
+/// The set of the high half before any switch: the first that is declared. (The standard wants a switch to those behind
+/// the first value, which some programs leave out.)
 const CodeSet* first_high(const std::string& character_sets) {
   for (std::size_t begin = 0; begin <= character_sets.size();) {
     const std::size_t end = std::min(character_sets.find('\\', begin), character_sets.size());
@@ -70,7 +71,9 @@ const CodeSet* first_high(const std::string& character_sets) {
 bool needs_code_extensions(const std::string& character_sets) {
   const auto names = [&](const std::string& term) {
     const std::size_t at = character_sets.find(term);
-    return at != std::string::npos && (character_sets.size() == at + term.size() || character_sets[at + term.size()] < '0' || character_sets[at + term.size()] > '9');
+    return at != std::string::npos &&
+           (character_sets.size() == at + term.size() || character_sets[at + term.size()] < '0' ||
+            character_sets[at + term.size()] > '9');
   };
   return names("IR 87") || names("IR 159") || names("IR 13") || names("IR 58");
 }
@@ -94,7 +97,8 @@ std::string decode_dicom_text(const std::string& bytes, const std::string& chara
     }
     const bool upper = static_cast<unsigned char>(bytes[i]) >= 0x80;
     const CodeSet* set = upper ? high : low;
-    const bool plain = !upper && (set->bytes == 1 || static_cast<unsigned char>(bytes[i]) <= 0x20);  // blanks and control signs are in every set
+    // blanks and control signs are in every set
+    const bool plain = !upper && (set->bytes == 1 || static_cast<unsigned char>(bytes[i]) <= 0x20);
     if (plain) {
       if (bytes[i] == '\\') break;
       out += bytes[i++];

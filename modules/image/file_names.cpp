@@ -16,11 +16,10 @@ bool is_digit(char c) {
 const struct {
   const char* ending;
   FileFormat format;
-} endings[] = {
-    {".nii.gz", FileFormat::nifti}, {".nii", FileFormat::nifti},     {".nrrd", FileFormat::nrrd},
-    {".nhdr", FileFormat::nrrd},    {".mha", FileFormat::metaimage}, {".mhd", FileFormat::metaimage},
-    {".gipl.gz", FileFormat::gipl}, {".gipl", FileFormat::gipl},     {".png", FileFormat::png},
-    {".tiff", FileFormat::tiff},    {".tif", FileFormat::tiff}};
+} endings[] = {{".nii.gz", FileFormat::nifti}, {".nii", FileFormat::nifti},     {".nrrd", FileFormat::nrrd},
+               {".nhdr", FileFormat::nrrd},    {".mha", FileFormat::metaimage}, {".mhd", FileFormat::metaimage},
+               {".gipl.gz", FileFormat::gipl}, {".gipl", FileFormat::gipl},     {".png", FileFormat::png},
+               {".tiff", FileFormat::tiff},    {".tif", FileFormat::tiff}};
 
 }  // namespace
 
@@ -38,7 +37,8 @@ FileFormat format_of(const std::string& path) {
 std::string stem_of(const std::string& path) {
   const std::string name = file_name_of(path), lower = lower_case(name);
   for (const auto& e : endings)
-    if (lower != e.ending && ends_with(lower, e.ending)) return name.substr(0, name.size() - std::string(e.ending).size());
+    if (lower != e.ending && ends_with(lower, e.ending))
+      return name.substr(0, name.size() - std::string(e.ending).size());
   return name.substr(0, name.find_last_of('.'));
 }
 
@@ -66,7 +66,8 @@ bool natural_less(const std::string& a, const std::string& b) {
 
 namespace {
 
-/// Calls visit(text before, sign or 0, begin, end) for every run of digits; the text has '#' for earlier numbers and no sign.
+/// Calls visit(text before, sign or 0, begin, end) for every run of digits; the text has '#' for earlier numbers and no
+/// sign.
 template <class Visit>
 void each_number(const std::string& name, Visit visit) {
   std::string before;
@@ -95,7 +96,8 @@ int compare_numbers(const std::string& a, const std::string& b) {
 NameOrder::NameOrder(const std::vector<std::string>& names) {
   std::map<std::string, std::set<char>> signs;
   for (const std::string& name : names)
-    each_number(name, [&](const std::string& before, char sign, std::size_t, std::size_t) { signs[before].insert(sign); });
+    each_number(name,
+                [&](const std::string& before, char sign, std::size_t, std::size_t) { signs[before].insert(sign); });
   for (const auto& [before, found] : signs)
     if (found.size() > 1) signed_after_.insert(before);
 }

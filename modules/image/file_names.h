@@ -16,8 +16,9 @@ std::string file_name_of(const std::string& path);
 /// True when a sorts before b with digit runs compared as numbers: "slice2" before "slice10".
 bool natural_less(const std::string& a, const std::string& b);
 
-/// The natural order of a set of names. A sign before a number counts as one where the set shows that it is no hyphen: "z-10",
-/// "z0" and "z5" (or "z-10" and "z+5") have numbers from -10 to 5; "scan-1" and "scan-2" have the numbers 1 and 2.
+/// The natural order of a set of names. A sign before a number counts as one where the set shows that it is no hyphen:
+/// "z-10", "z0" and "z5" (or "z-10" and "z+5") have numbers from -10 to 5; "scan-1" and "scan-2" have the numbers 1
+/// and 2.
 class NameOrder {
  public:
   explicit NameOrder(const std::vector<std::string>& names);

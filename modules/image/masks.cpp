@@ -48,8 +48,9 @@ LabelVolume read_masks(const std::vector<std::string>& files, bool allow_outside
                    "rename or remove one of them");
     warnings.insert(warnings.end(), mask.warnings.begin(), mask.warnings.end());
     if (mask.labels.size() > 2)
-      warnings.push_back(warning_at(WarningCode::values_changed, file, "holds " + std::to_string(mask.labels.size() - 1) +
-                         " different labels; all its voxels above 0 count as " + quoted(labels[k])));
+      warnings.push_back(warning_at(WarningCode::values_changed, file,
+                                    "holds " + std::to_string(mask.labels.size() - 1) +
+                                        " different labels; all its voxels above 0 count as " + quoted(labels[k])));
     const bool first = k == 1;
     if (!first) {
       const std::string what = difference(all, mask);
@@ -80,16 +81,18 @@ LabelVolume read_masks(const std::vector<std::string>& files, bool allow_outside
     }
   }
   for (const auto& [pair, voxels] : overlap)
-    warnings.push_back({WarningCode::overlap, quoted(labels[pair.second]), "masks " + quoted(labels[pair.first]) + " and " + quoted(labels[pair.second]) +
-                       " overlap in " + std::to_string(voxels) + (voxels == 1 ? " voxel" : " voxels") +
-                       ", which went to " + quoted(labels[pair.first])});
+    warnings.push_back({WarningCode::overlap, quoted(labels[pair.second]),
+                        "masks " + quoted(labels[pair.first]) + " and " + quoted(labels[pair.second]) + " overlap in " +
+                            std::to_string(voxels) + (voxels == 1 ? " voxel" : " voxels") + ", which went to " +
+                            quoted(labels[pair.first])});
 
   // Structures without a voxel keep their number for themselves but leave the palette.
   std::vector<std::uint16_t> target(labels.size(), 0);
   std::vector<LabelInfo> kept = {labels[0]};
   for (std::size_t k = 1; k < labels.size(); ++k) {
     if (own[k] == 0) {
-      warnings.push_back({WarningCode::left_out, quoted(labels[k]), "mask " + quoted(labels[k]) + " has no voxel of its own and is left out"});
+      warnings.push_back({WarningCode::left_out, quoted(labels[k]),
+                          "mask " + quoted(labels[k]) + " has no voxel of its own and is left out"});
       continue;
     }
     target[k] = static_cast<std::uint16_t>(kept.size());

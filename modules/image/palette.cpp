@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kUsualLabels = 1000;  // above: looked at more closely
 constexpr std::size_t kMostValues = 65536;  // of a voxel's two bytes, with the background
-constexpr double kCoherent_rel = 0.3;       // of neighbours in a parcel atlas are alike; of an intensity image, a few percent
+// of neighbours in a parcel atlas are alike; of an intensity image, a few percent
+constexpr double kCoherent_rel = 0.3;
 const char* const mend = "give the label volume (segmentation), whole numbers from 0";
 
 std::string number(double value) {
@@ -32,7 +33,9 @@ std::int32_t Palette::add(std::int64_t value, std::size_t offset, const Where& w
   const auto [entry, fresh] = index_.emplace(value, static_cast<std::int32_t>(values_.size()));
   if (fresh) {
     if (values_.size() >= kMostValues)
-      fail_input("looks like an intensity image given by mistake: more than " + std::to_string(kMostValues - 1) + " distinct values", where(offset).first, mend);
+      fail_input("looks like an intensity image given by mistake: more than " + std::to_string(kMostValues - 1) +
+                     " distinct values",
+                 where(offset).first, mend);
     values_.push_back(value);
   }
   return entry->second;
@@ -42,7 +45,8 @@ namespace {
 
 /// The share of neighbours along an axis that are of one label, where both are labelled.
 double coherence(const LabelVolume& volume, int axis) {
-  const std::array<std::size_t, 3> step = {1, static_cast<std::size_t>(volume.size[0]), static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
+  const std::array<std::size_t, 3> step = {1, static_cast<std::size_t>(volume.size[0]),
+                                           static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
   std::size_t pairs = 0, same = 0;
   for (std::size_t i = 0; i + step[axis] < volume.voxels.size(); ++i) {
     const std::uint16_t a = volume.voxels[i], b = volume.voxels[i + step[axis]];
@@ -57,7 +61,9 @@ double coherence(const LabelVolume& volume, int axis) {
 
 void Palette::finish(LabelVolume& volume, const std::string& path) const {
   if (values_.size() > kUsualLabels + 1 && std::min(coherence(volume, 0), coherence(volume, 1)) < kCoherent_rel)
-    fail_input("looks like an intensity image given by mistake: more than " + std::to_string(kUsualLabels) + " distinct values, and neighbouring voxels differ", path, mend);
+    fail_input("looks like an intensity image given by mistake: more than " + std::to_string(kUsualLabels) +
+                   " distinct values, and neighbouring voxels differ",
+               path, mend);
   std::vector<std::size_t> order(values_.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin() + 1, order.end(), [&](auto a, auto b) { return values_[a] < values_[b]; });
@@ -72,8 +78,7 @@ void Palette::finish(LabelVolume& volume, const std::string& path) const {
 }
 
 void Palette::fail_negative(double value, const std::pair<std::string, std::string>& where) {
-  fail_input("looks like an intensity image given by mistake: negative value " + number(value), at(where),
-             mend);
+  fail_input("looks like an intensity image given by mistake: negative value " + number(value), at(where), mend);
 }
 
 void Palette::fail_fraction(double value, const std::pair<std::string, std::string>& where) {
@@ -88,7 +93,9 @@ void Palette::fail_large(double value, const std::pair<std::string, std::string>
 
 void warn_of_rounded_labels(double worst, const std::string& path, std::vector<Warning>& warnings) {
   if (worst > 0)
-    warnings.push_back(warning_at(WarningCode::values_changed, path, "its labels are stored with a slope and an intercept; values up to " + number(worst) + " off whole numbers were rounded"));
+    warnings.push_back(warning_at(WarningCode::values_changed, path,
+                                  "its labels are stored with a slope and an intercept; values up to " + number(worst) +
+                                      " off whole numbers were rounded"));
 }
 
 }  // namespace stackmesh

@@ -58,8 +58,8 @@ class Palette {
     }
   }
 
-  /// Sorts the palette, renumbers the voxels and fills volume.labels. More than a thousand labels must look like parcels: then
-  /// neighbouring voxels are mostly of one label, which those of an intensity image are not.
+  /// Sorts the palette, renumbers the voxels and fills volume.labels. More than a thousand labels must look like
+  /// parcels: then neighbouring voxels are mostly of one label, which those of an intensity image are not.
   /// @throws Error(input) naming `path` where they do not
   void finish(LabelVolume& volume, const std::string& path) const;
 
@@ -78,7 +78,8 @@ class Palette {
 /// Labels that are stored with a slope: what it makes is near whole numbers, but not whole.
 class LabelRounding {
  public:
-  LabelRounding(double slope, double intercept) : slope_(slope), intercept_(intercept), near_(std::min(0.05, std::max(1e-3, 0.51 * std::abs(slope)))) {}
+  LabelRounding(double slope, double intercept)
+      : slope_(slope), intercept_(intercept), near_(std::min(0.05, std::max(1e-3, 0.51 * std::abs(slope)))) {}
   /// The value that a stored one stands for, whole where it is near a whole number.
   double round(double stored) {
     const double value = slope_ * stored + intercept_, whole = std::nearbyint(value), off = std::abs(value - whole);

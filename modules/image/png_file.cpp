@@ -1,5 +1,3 @@
-#include "image/slice_image.h"
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "image/slice_image.h"
 
 namespace stackmesh {
 namespace {
@@ -33,8 +32,7 @@ Header read_header(const unsigned char* p, const std::string& path) {
   if (h.colour == 3)
     fail_input("the PNG has a colour palette, so its pixels are colours and not label numbers", path,
                "save it as 8- or 16-bit greyscale with the label as grey value");
-  const bool bits =
-      h.bits == 8 || h.bits == 16 || (h.colour == 0 && (h.bits == 1 || h.bits == 2 || h.bits == 4));
+  const bool bits = h.bits == 8 || h.bits == 16 || (h.colour == 0 && (h.bits == 1 || h.bits == 2 || h.bits == 4));
   const bool colour = h.colour == 0 || h.colour == 2 || h.colour == 4 || h.colour == 6;
   if (!bits || !colour || p[10] != 0 || p[11] != 0 || h.interlace > 1) damaged("damaged (header)", path);
   if (h.width == 0 || h.height == 0 || h.width > 1000000 || h.height > 1000000)
@@ -51,13 +49,20 @@ struct Pass {
 class PngDecoder {
  public:
   PngDecoder(const std::vector<unsigned char>& stream, const Header& h, const std::string& path)
-      : h_(h), path_(path), samples_(h.colour == 0 ? 1 : h.colour == 4 ? 2 : h.colour == 2 ? 3 : 4), bytes_(h.bits == 16 ? 2 : 1) {
+      : h_(h),
+        path_(path),
+        samples_(h.colour == 0   ? 1
+                 : h.colour == 4 ? 2
+                 : h.colour == 2 ? 3
+                                 : 4),
+        bytes_(h.bits == 16 ? 2 : 1) {
     z_.next_in = const_cast<unsigned char*>(stream.data());
     z_.avail_in = static_cast<uInt>(stream.size());
     if (inflateInit(&z_) != Z_OK) throw std::bad_alloc();
     // Deflate cannot shrink data more than about 1032 times.
     const double row = std::ceil(static_cast<double>(h.width) * samples_ * h.bits / 8);
-    if (row * static_cast<double>(h.height) > 1040.0 * static_cast<double>(stream.size()) + 4096) damaged("damaged or truncated (too few pixels)", path_);
+    if (row * static_cast<double>(h.height) > 1040.0 * static_cast<double>(stream.size()) + 4096)
+      damaged("damaged or truncated (too few pixels)", path_);
   }
   ~PngDecoder() { inflateEnd(&z_); }
   PngDecoder(const PngDecoder&) = delete;
@@ -68,11 +73,11 @@ class PngDecoder {
     image_.height = h_.height;
     image_.type = bytes_ == 2 ? VoxelType::u16 : VoxelType::u8;
     image_.values.resize(h_.width * h_.height * bytes_);
-    static const Pass passes[7] = {{0, 8, 0, 8}, {4, 8, 0, 8}, {0, 4, 4, 8}, {2, 4, 0, 4}, {0, 2, 2, 4}, {1, 2, 0, 2}, {0, 1, 1, 2}};
+    static const Pass passes[7] = {{0, 8, 0, 8}, {4, 8, 0, 8}, {0, 4, 4, 8}, {2, 4, 0, 4},
+                                   {0, 2, 2, 4}, {1, 2, 0, 2}, {0, 1, 1, 2}};
     if (h_.interlace)
       for (const Pass& pass : passes) read_pass(pass);
-    else
-      read_pass({});
+    else read_pass({});
     unsigned char rest[64];
     while (code_ == Z_OK) {  // the check sum of the stream, and whatever follows the last row
       z_.next_out = rest;
@@ -85,17 +90,21 @@ class PngDecoder {
 
  private:
   void read_pass(const Pass& pass) {
-    const auto count = [](std::uint64_t n, std::uint64_t first, std::uint64_t step) { return n > first ? (n - first + step - 1) / step : 0; };
+    const auto count = [](std::uint64_t n, std::uint64_t first, std::uint64_t step) {
+      return n > first ? (n - first + step - 1) / step : 0;
+    };
     const std::uint64_t columns = count(h_.width, pass.x, pass.dx), rows = count(h_.height, pass.y, pass.dy);
     if (columns == 0) return;
-    const std::size_t pixel_bits = static_cast<std::size_t>(samples_) * static_cast<std::size_t>(h_.bits), length = (columns * pixel_bits + 7) / 8;
+    const std::size_t pixel_bits = static_cast<std::size_t>(samples_) * static_cast<std::size_t>(h_.bits),
+                      length = (columns * pixel_bits + 7) / 8;
     std::vector<unsigned char> row(1 + length), before(1 + length, 0), grey(columns * bytes_);
     for (std::uint64_t y = 0; y < rows; ++y) {
       inflate_row(row);
       undo_filter(row, before, std::max<std::size_t>(1, pixel_bits / 8));
       take_row(row, columns, pass.y + y * pass.dy, grey);
       for (std::uint64_t x = 0; x < columns; ++x)
-        std::memcpy(image_.values.data() + ((pass.y + y * pass.dy) * h_.width + pass.x + x * pass.dx) * bytes_, grey.data() + x * bytes_, bytes_);
+        std::memcpy(image_.values.data() + ((pass.y + y * pass.dy) * h_.width + pass.x + x * pass.dx) * bytes_,
+                    grey.data() + x * bytes_, bytes_);
       std::swap(row, before);
     }
   }
@@ -112,7 +121,8 @@ class PngDecoder {
     if (row[0] > 4) damaged("damaged (pixels)", path_);
   }
 
-  static void undo_filter(std::vector<unsigned char>& row, const std::vector<unsigned char>& before, std::size_t pixel) {
+  static void undo_filter(std::vector<unsigned char>& row, const std::vector<unsigned char>& before,
+                          std::size_t pixel) {
     for (std::size_t i = 1; i < row.size(); ++i) {
       const int left = i > pixel ? row[i - pixel] : 0, up = before[i], corner = i > pixel ? before[i - pixel] : 0;
       int guess = 0;
@@ -128,12 +138,14 @@ class PngDecoder {
   }
 
   /// The row's pixels as numbers of one or two bytes.
-  void take_row(std::vector<unsigned char>& row, std::uint64_t columns, std::uint64_t y, std::vector<unsigned char>& grey) {
+  void take_row(std::vector<unsigned char>& row, std::uint64_t columns, std::uint64_t y,
+                std::vector<unsigned char>& grey) {
     unsigned char* p = row.data() + 1;
     if (h_.bits < 8) {
       for (std::uint64_t x = 0; x < columns; ++x) {
         const std::uint64_t bit = x * static_cast<std::uint64_t>(h_.bits);
-        grey[x] = static_cast<unsigned char>(p[bit / 8] >> (8 - h_.bits - static_cast<int>(bit % 8)) & ((1 << h_.bits) - 1));
+        grey[x] =
+            static_cast<unsigned char>(p[bit / 8] >> (8 - h_.bits - static_cast<int>(bit % 8)) & ((1 << h_.bits) - 1));
       }
       return;
     }
@@ -156,13 +168,15 @@ class PngDecoder {
 
 }  // namespace
 
-void take_grey(const unsigned char* pixels, std::uint64_t count, int samples, int colours, std::size_t bytes, std::uint64_t row, unsigned char* out, const std::string& where) {
+void take_grey(const unsigned char* pixels, std::uint64_t count, int samples, int colours, std::size_t bytes,
+               std::uint64_t row, unsigned char* out, const std::string& where) {
   const std::size_t pixel = static_cast<std::size_t>(samples) * bytes;
   for (std::uint64_t x = 0; x < count; ++x) {
     const unsigned char* p = pixels + x * pixel;
     for (int c = 1; c < colours; ++c)
       if (std::memcmp(p, p + static_cast<std::size_t>(c) * bytes, bytes) != 0)
-        fail_input("the slice is a colour image", where + ", pixel (" + std::to_string(x) + ", " + std::to_string(row) + ")",
+        fail_input("the slice is a colour image",
+                   where + ", pixel (" + std::to_string(x) + ", " + std::to_string(row) + ")",
                    "save it as 8- or 16-bit greyscale with the label as grey value");
     std::memcpy(out + x * bytes, p, bytes);
   }
@@ -171,7 +185,8 @@ void take_grey(const unsigned char* pixels, std::uint64_t count, int samples, in
 SliceImage read_png(const std::vector<unsigned char>& bytes, const std::string& path) {
   static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   if (bytes.size() > 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
-    fail_input("this is a JPEG file, whose compression changes label numbers", path, "export the labels as PNG or TIFF");
+    fail_input("this is a JPEG file, whose compression changes label numbers", path,
+               "export the labels as PNG or TIFF");
   if (bytes.size() < 8 || std::memcmp(bytes.data(), signature, 8) != 0)
     fail_input("this is no PNG file, or it is damaged", path, "copy or export the file again");
   std::vector<unsigned char> stream;

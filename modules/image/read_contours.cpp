@@ -19,8 +19,7 @@
 namespace stackmesh {
 namespace {
 
-constexpr const char* form =
-    "expected 'S <sections>', then per section 'v <vertices> z <height>' and polygons in { }";
+constexpr const char* form = "expected 'S <sections>', then per section 'v <vertices> z <height>' and polygons in { }";
 
 struct Token {
   std::string_view text;
@@ -40,8 +39,7 @@ class Tokens {
       ++at_;
     }
     const std::size_t begin = at_;
-    if (at_ < text_.size() && is_brace(text_[at_]))
-      ++at_;
+    if (at_ < text_.size() && is_brace(text_[at_])) ++at_;
     else
       while (at_ < text_.size() && !is_space(text_[at_]) && !is_brace(text_[at_])) ++at_;
     return {text_.substr(begin, at_ - begin), line_};
@@ -55,9 +53,7 @@ class Tokens {
   }
 
  private:
-  static bool is_space(char c) {
-    return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\f' || c == '\v';
-  }
+  static bool is_space(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\f' || c == '\v'; }
   static bool is_brace(char c) { return c == '{' || c == '}'; }
   std::string_view text_;
   std::size_t at_ = 0, line_ = 1;
@@ -79,19 +75,22 @@ class Parser {
     const std::int64_t announced = count("sections");
     while (!tokens_.peek().end()) read_section(file);
     if (static_cast<std::int64_t>(file.sections.size()) < announced)
-      fail_input("the file is truncated: " + std::to_string(file.sections.size()) +
-                     " sections where its header says " + std::to_string(announced),
+      fail_input("the file is truncated: " + std::to_string(file.sections.size()) + " sections where its header says " +
+                     std::to_string(announced),
                  path_, "write the file again");
     if (static_cast<std::int64_t>(file.sections.size()) > announced)
-      file.warnings.push_back(warning_at(WarningCode::header, path_, "holds " + std::to_string(file.sections.size()) +
-                              " sections where its header says " + std::to_string(announced) +
-                              "; all are read"));
+      file.warnings.push_back(warning_at(WarningCode::header, path_,
+                                         "holds " + std::to_string(file.sections.size()) +
+                                             " sections where its header says " + std::to_string(announced) +
+                                             "; all are read"));
     if (repeats_ > 0)
-      file.warnings.push_back(warning_at(WarningCode::repeated, path_, std::to_string(repeats_) +
-                              (repeats_ == 1 ? " repeated point" : " repeated points") + " removed (" +
-                              repeats_where_ + (repeat_sections_ > 8 ? ", ..." : "") + ")"));
+      file.warnings.push_back(warning_at(WarningCode::repeated, path_,
+                                         std::to_string(repeats_) +
+                                             (repeats_ == 1 ? " repeated point" : " repeated points") + " removed (" +
+                                             repeats_where_ + (repeat_sections_ > 8 ? ", ..." : "") + ")"));
     if (empty_ > 0)
-      file.warnings.push_back(warning_at(WarningCode::left_out, path_, std::to_string(empty_) + " contours without points left out"));
+      file.warnings.push_back(
+          warning_at(WarningCode::left_out, path_, std::to_string(empty_) + " contours without points left out"));
   }
 
  private:
@@ -111,8 +110,7 @@ class Parser {
   std::int64_t count(const char* what) {
     const Token token = tokens_.next();
     std::int64_t value = -1;
-    const auto [end, error] =
-        std::from_chars(token.text.data(), token.text.data() + token.text.size(), value);
+    const auto [end, error] = std::from_chars(token.text.data(), token.text.data() + token.text.size(), value);
     if (token.end() || error != std::errc() || end != token.text.data() + token.text.size() || value < 0)
       fail(token, std::string("the number of ") + what);
     return value;
@@ -151,12 +149,13 @@ class Parser {
       section.polygons.push_back(std::move(polygon));
     }
     if (vertices < announced && tokens_.peek().end())
-      fail_input("the file is truncated: " + std::to_string(vertices) + " vertices where " +
-                     std::to_string(announced) + " are announced",
+      fail_input("the file is truncated: " + std::to_string(vertices) + " vertices where " + std::to_string(announced) +
+                     " are announced",
                  path_ + ", " + where, "write the file again");
     if (vertices != announced)
-      file.warnings.push_back({WarningCode::header, path_ + ", " + where, path_ + ", " + where + ": " + std::to_string(vertices) + " vertices where " +
-                              std::to_string(announced) + " are announced; all are read"});
+      file.warnings.push_back({WarningCode::header, path_ + ", " + where,
+                               path_ + ", " + where + ": " + std::to_string(vertices) + " vertices where " +
+                                   std::to_string(announced) + " are announced; all are read"});
     if (removed > 0) {
       repeats_ += removed;
       if (++repeat_sections_ <= 8)
@@ -174,8 +173,7 @@ class Parser {
       const double px = number(x, "coordinate or '}'");
       const Token y = tokens_.next();
       if (!y.end() && y.line != x.line)
-        fail_input("a point needs x and y", path_ + ", line " + std::to_string(x.line),
-                   "write one 'x y' a line");
+        fail_input("a point needs x and y", path_ + ", line " + std::to_string(x.line), "write one 'x y' a line");
       polygon.points.push_back({px, number(y, "coordinate")});
       ++vertices;
     }
@@ -199,9 +197,8 @@ class Parser {
 void sort_sections(LabelContours& file) {
   std::vector<std::size_t> order(file.sections.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return file.sections[a].z_mm < file.sections[b].z_mm;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return file.sections[a].z_mm < file.sections[b].z_mm; });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (file.sections[order[i]].z_mm - file.sections[order[i - 1]].z_mm <= 1e-9)
       fail_input("two sections have the same height " + format(file.sections[order[i]].z_mm) + " mm",
@@ -224,8 +221,7 @@ void split_pair(const std::string& text, LabelContours& file) {
   const char* const how = "write 3=FILE.cnt or NAME=FILE.cnt";
   if (label.empty()) fail_usage("a contour file without a label before '='", "'" + text + "'", how);
   if (label.find_first_not_of("0123456789") != std::string::npos &&
-      !(label[0] == '-' && label.size() > 1 &&
-        label.find_first_not_of("0123456789", 1) == std::string::npos)) {
+      !(label[0] == '-' && label.size() > 1 && label.find_first_not_of("0123456789", 1) == std::string::npos)) {
     file.label = 0;
     file.name = label;
     return;

@@ -14,7 +14,9 @@ bool is_whole(const std::string& word) {
 }
 
 std::optional<std::uint8_t> colour_part(const std::string& word) {
-  return is_whole(word) && std::stol(word) < 256 ? std::optional<std::uint8_t>(static_cast<std::uint8_t>(std::stol(word))) : std::nullopt;
+  return is_whole(word) && std::stol(word) < 256
+             ? std::optional<std::uint8_t>(static_cast<std::uint8_t>(std::stol(word)))
+             : std::nullopt;
 }
 
 std::optional<std::array<std::uint8_t, 3>> colour_of(const std::vector<std::string>& words, std::size_t from) {
@@ -39,7 +41,8 @@ std::vector<LabelInfo> read_label_table(const std::string& path) {
   for (int number = 1; std::getline(file, line); ++number) {
     const auto bad = [&](const std::string& what) {
       fail_input(what, path + ", line " + std::to_string(number),
-                 "give lines of a Slicer colour table (number name R G B A) or an ITK-SNAP label description (number R G B A V M \"name\")");
+                 "give lines of a Slicer colour table (number name R G B A) or an ITK-SNAP label description (number R "
+                 "G B A V M \"name\")");
     };
     if (line.find('\0') != std::string::npos) bad("the label table is no text");
     LabelInfo info;

@@ -6,8 +6,8 @@
 
 namespace stackmesh {
 
-/// Reads label names and colours from a table: a Slicer colour table (`number name R G B A`, .ctbl or .txt) or an ITK-SNAP label
-/// description (`number R G B A V M "name"`). Number 0 is passed over.
+/// Reads label names and colours from a table: a Slicer colour table (`number name R G B A`, .ctbl or .txt) or an
+/// ITK-SNAP label description (`number R G B A V M "name"`). Number 0 is passed over.
 /// @throws Error(input) naming file and line
 std::vector<LabelInfo> read_label_table(const std::string& path);
 

@@ -37,8 +37,7 @@ std::vector<std::string> list_folder(const std::string& path) {
     std::error_code ignored;
     if (it->is_regular_file(ignored)) files.push_back(it->path().string());
   }
-  if (error)
-    fail_input("cannot list the folder (" + error.message() + ")", path, "check that you may read it");
+  if (error) fail_input("cannot list the folder (" + error.message() + ")", path, "check that you may read it");
   return files;
 }
 
@@ -53,8 +52,7 @@ std::vector<std::string> expand_glob(const std::string& pattern) {
   return files;
 }
 
-LabelVolume read_files(const std::vector<std::string>& files, const std::string& path,
-                       const ReadOptions& options) {
+LabelVolume read_files(const std::vector<std::string>& files, const std::string& path, const ReadOptions& options) {
   std::vector<std::string> slices, masks;
   for (const std::string& file : files) {
     const FileFormat format = format_of(file);
@@ -62,8 +60,9 @@ LabelVolume read_files(const std::vector<std::string>& files, const std::string&
     (is_slice(format) ? slices : masks).push_back(file);
   }
   if (slices.empty() && masks.empty())
-    fail_input("no PNG/TIFF slices and no mask volumes", path,
-               "give a folder of .png/.tif label slices, of one .nii.gz/.nrrd/.mha mask per structure, or of DICOM files");
+    fail_input(
+        "no PNG/TIFF slices and no mask volumes", path,
+        "give a folder of .png/.tif label slices, of one .nii.gz/.nrrd/.mha mask per structure, or of DICOM files");
   if (!slices.empty() && !masks.empty())
     fail_input("both slices and mask volumes are there",
                file_name_of(slices[0]) + " and " + file_name_of(masks[0]) + " in " + path,
@@ -80,8 +79,7 @@ LabelVolume read_files(const std::vector<std::string>& files, const std::string&
   std::sort(masks.begin(), masks.end(), by_stem);
   if (!slices.empty()) return read_slices(slices, options.spacing_mm);
   if (options.spacing_mm)
-    fail_usage("--spacing is for PNG/TIFF slices", path,
-               "leave it out: the masks carry their own voxel size");
+    fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: the masks carry their own voxel size");
   return read_masks(masks, options.allow_outside);
 }
 
@@ -90,7 +88,9 @@ LabelVolume read_dicom(const DicomContent& content, const std::string& path, con
   if (options.spacing_mm)
     fail_usage("--spacing is for PNG/TIFF slices", path, "leave it out: DICOM carries its own voxel size");
   const std::string object = label_object(content, path);
-  if (!content.structure_sets.empty()) fail_input("this is a structure set, which has contours and no voxels", object, "give it to mesh, surface or contours");
+  if (!content.structure_sets.empty())
+    fail_input("this is a structure set, which has contours and no voxels", object,
+               "give it to mesh, surface or contours");
   if (!object.empty()) return read_segmentation(object, options.labels);
   if (!content.images.empty()) return read_series_labels(path, options.series);
   refuse_dicom(content.others[0]);
@@ -108,8 +108,11 @@ LabelVolume read_any(const std::string& path, const ReadOptions& options) {
     if (!dicom.any() || known.size() > dicom.size()) return read_files(files, path, options);
     LabelVolume volume = read_dicom(dicom, path, options);
     if (!known.empty())
-      volume.warnings.push_back(warning_at(WarningCode::left_out, path, "a folder of DICOM in which " + file_name_of(*std::min_element(known.begin(), known.end())) +
-                                (known.size() > 1 ? " and " + std::to_string(known.size() - 1) + " more files" : "") + " of another kind are left out"));
+      volume.warnings.push_back(
+          warning_at(WarningCode::left_out, path,
+                     "a folder of DICOM in which " + file_name_of(*std::min_element(known.begin(), known.end())) +
+                         (known.size() > 1 ? " and " + std::to_string(known.size() - 1) + " more files" : "") +
+                         " of another kind are left out"));
     return volume;
   }
   if (!fs::exists(status)) {
@@ -118,7 +121,8 @@ LabelVolume read_any(const std::string& path, const ReadOptions& options) {
   }
   if (!fs::is_regular_file(status)) fail_input("the input is no regular file", path, "give a file or a folder");
   const FileFormat format = format_of(path);
-  if (format == FileFormat::unknown && dicom_kind(path) != DicomKind::none) return read_dicom(dicom_content(path), path, options);
+  if (format == FileFormat::unknown && dicom_kind(path) != DicomKind::none)
+    return read_dicom(dicom_content(path), path, options);
   if (format == FileFormat::unknown) fail_input("the ending is of no known format", path, inputs);
   if (is_slice(format)) return read_slices({path}, options.spacing_mm);
   if (options.spacing_mm)
@@ -135,8 +139,7 @@ LabelVolume read_label_volume(const std::string& path, const ReadOptions& option
         fail_usage("a voxel size must be finite and above 0", "--spacing", "write --spacing X,Y,Z in mm");
   LabelVolume volume = read_any(path, options);
   if (volume.labels.size() < 2)
-    fail_input("no label: every voxel is background (0)", path,
-               "give a volume that holds at least one label");
+    fail_input("no label: every voxel is background (0)", path, "give a volume that holds at least one label");
   return volume;
 }
 

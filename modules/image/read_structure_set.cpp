@@ -57,7 +57,8 @@ class StructureSetReader {
       chosen.structures.push_back(std::move(s));
     }
     if (chosen.structures.empty()) fail_input("no structure has a closed contour", path_, again);
-    if (!empty_.empty()) set_.warnings.push_back(warning_at(WarningCode::left_out, path_, "no closed contour for " + list(empty_)));
+    if (!empty_.empty())
+      set_.warnings.push_back(warning_at(WarningCode::left_out, path_, "no closed contour for " + list(empty_)));
     chosen.frame = set_.frame;
     chosen.warnings = std::move(set_.warnings);
     return chosen;
@@ -77,7 +78,8 @@ class StructureSetReader {
       s.path = path_;
       s.name = text_of(*item, DCM_ROIName);
       if (number && std::abs(*number) < 1e15) by_number_.emplace(static_cast<long>(*number), set_.structures.size());
-      const bool usable = number && *number >= 1 && *number < 2147483648.0 && taken.insert(static_cast<Label>(*number)).second;
+      const bool usable =
+          number && *number >= 1 && *number < 2147483648.0 && taken.insert(static_cast<Label>(*number)).second;
       s.label = usable ? static_cast<Label>(*number) : 0;
       if (!usable) unnumbered.push_back(set_.structures.size());
       set_.structures.push_back(std::move(s));
@@ -87,8 +89,10 @@ class StructureSetReader {
     for (std::size_t k : unnumbered) {
       while (!taken.insert(next).second) ++next;
       set_.structures[k].label = next;
-      set_.warnings.push_back(warning_at(WarningCode::renumbered, path_, "structure '" + set_.structures[k].name + "' has no ROI number of its own above 0; it becomes label " +
-                              std::to_string(next)));
+      set_.warnings.push_back(warning_at(WarningCode::renumbered, path_,
+                                         "structure '" + set_.structures[k].name +
+                                             "' has no ROI number of its own above 0; it becomes label " +
+                                             std::to_string(next)));
     }
     for (LabelContours& s : set_.structures)
       if (s.name.empty()) s.name = "structure_" + std::to_string(s.label);
@@ -98,9 +102,11 @@ class StructureSetReader {
     std::set<std::size_t> filled;
     for (DcmItem* roi : items_of(data_, DCM_ROIContourSequence)) {
       const std::optional<double> number = number_of(*roi, DCM_ReferencedROINumber, path_);
-      const auto found = number && std::abs(*number) < 1e15 ? by_number_.find(static_cast<long>(*number)) : by_number_.end();
+      const auto found =
+          number && std::abs(*number) < 1e15 ? by_number_.find(static_cast<long>(*number)) : by_number_.end();
       if (found == by_number_.end()) {
-        set_.warnings.push_back(warning_at(WarningCode::left_out, path_, "contours of a structure that the file does not name are left out"));
+        set_.warnings.push_back(warning_at(WarningCode::left_out, path_,
+                                           "contours of a structure that the file does not name are left out"));
         continue;
       }
       const std::size_t k = found->second;
@@ -127,11 +133,13 @@ class StructureSetReader {
       const std::string type = text_of(*item, DCM_ContourGeometricType);
       const std::vector<double> data = numbers_of(*item, DCM_ContourData, where(k, number));
       if (data.size() % 3 != 0)
-        fail_input("a contour has " + std::to_string(data.size()) + " coordinates, no multiple of three", where(k, number), again);
+        fail_input("a contour has " + std::to_string(data.size()) + " coordinates, no multiple of three",
+                   where(k, number), again);
       const std::optional<double> announced = number_of(*item, DCM_NumberOfContourPoints, where(k, number));
       if (announced && *announced != static_cast<double>(data.size() / 3))
-        set_.warnings.push_back(warning_at(WarningCode::header, where(k, number), std::to_string(data.size() / 3) + " points where its header says " +
-                                std::to_string(static_cast<long>(*announced)) + "; all are read"));
+        set_.warnings.push_back(warning_at(WarningCode::header, where(k, number),
+                                           std::to_string(data.size() / 3) + " points where its header says " +
+                                               std::to_string(static_cast<long>(*announced)) + "; all are read"));
       RawContour c;
       c.structure = k;
       c.number = number;
@@ -153,9 +161,16 @@ class StructureSetReader {
       contours_.push_back(std::move(c));
     }
     const std::string of = path_ + ": structure '" + set_.structures[k].name + "'";
-    if (!open.empty()) set_.warnings.push_back(warning_at(WarningCode::contours_mended, of, "open contours closed by a straight line: " + list(open)));
-    if (!thin.empty()) set_.warnings.push_back(warning_at(WarningCode::left_out, of, "contours that bound no area (fewer than three points, or on a line) left out: " + list(thin)));
-    if (!other.empty()) set_.warnings.push_back(warning_at(WarningCode::left_out, of, "points and curves that are no outlines left out: " + list(other)));
+    if (!open.empty())
+      set_.warnings.push_back(
+          warning_at(WarningCode::contours_mended, of, "open contours closed by a straight line: " + list(open)));
+    if (!thin.empty())
+      set_.warnings.push_back(
+          warning_at(WarningCode::left_out, of,
+                     "contours that bound no area (fewer than three points, or on a line) left out: " + list(thin)));
+    if (!other.empty())
+      set_.warnings.push_back(
+          warning_at(WarningCode::left_out, of, "points and curves that are no outlines left out: " + list(other)));
     return any;
   }
 
@@ -183,8 +198,10 @@ class StructureSetReader {
     u = (1 / norm(u)) * u;
     set_.frame.axes = {u, cross(n, u), n};
     if (in_tenths()) planar_mm_ += 0.1 * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-    set_.warnings.push_back(warning_at(WarningCode::header, path_, "the contours do not lie in axial planes; they are stacked along (" + std::to_string(n.x) + ", " +
-                            std::to_string(n.y) + ", " + std::to_string(n.z) + ")"));
+    set_.warnings.push_back(warning_at(WarningCode::header, path_,
+                                       "the contours do not lie in axial planes; they are stacked along (" +
+                                           std::to_string(n.x) + ", " + std::to_string(n.y) + ", " +
+                                           std::to_string(n.z) + ")"));
   }
 
   /// Written with one decimal: oblique points then lie up to 0.05 mm along each axis beside their plane.
@@ -216,13 +233,13 @@ class StructureSetReader {
   }
 
   static void merge_heights(LabelContours& s) {
-    std::stable_sort(s.sections.begin(), s.sections.end(), [](const ContourSection& a, const ContourSection& b) { return a.z_mm < b.z_mm; });
+    std::stable_sort(s.sections.begin(), s.sections.end(),
+                     [](const ContourSection& a, const ContourSection& b) { return a.z_mm < b.z_mm; });
     std::vector<ContourSection> merged;
     for (ContourSection& c : s.sections) {
       if (!merged.empty() && c.z_mm - merged.back().z_mm <= kSameHeight_mm)
         merged.back().polygons.push_back(std::move(c.polygons[0]));
-      else
-        merged.push_back(std::move(c));
+      else merged.push_back(std::move(c));
     }
     s.sections = std::move(merged);
   }

@@ -11,8 +11,8 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kInside_rel = 0.999;   // of a segment in another one is all of it
-constexpr double kCovered_rel = 0.95;   // of a segment under another one leaves too little of it
+constexpr double kInside_rel = 0.999;  // of a segment in another one is all of it
+constexpr double kCovered_rel = 0.95;  // of a segment under another one leaves too little of it
 constexpr std::size_t kMaxSegments = 1000;
 
 std::string name_of(const LabelInfo& label) {
@@ -27,8 +27,8 @@ std::string share(double part, double whole) {
 
 class Joiner {
  public:
-  Joiner(const std::vector<LabelInfo>& segments, const SliceLayers& layers, const std::string& labels, const std::string& path,
-         LabelVolume& volume)
+  Joiner(const std::vector<LabelInfo>& segments, const SliceLayers& layers, const std::string& labels,
+         const std::string& path, LabelVolume& volume)
       : segments_(segments), layers_(layers), path_(path), volume_(volume), by_name_(!labels.empty()) {
     if (segments.size() > kMaxSegments)
       fail_input("the file holds " + std::to_string(segments.size()) + " segments", path, "keep at most 1000 segments");
@@ -51,7 +51,7 @@ class Joiner {
   template <class Visit>
   void each_voxel(int k, Visit visit) const {
     const std::size_t pixels = static_cast<std::size_t>(volume_.size[0]) * volume_.size[1];
-    std::vector<std::uint16_t> first(pixels, 0);                  // the first segment of each voxel, and
+    std::vector<std::uint16_t> first(pixels, 0);              // the first segment of each voxel, and
     std::vector<std::pair<std::size_t, std::uint16_t>> more;  // the others of the few that have several
     for (const auto& layer : layers_(k))
       for (std::size_t i = 0; i < pixels; ++i) {
@@ -90,11 +90,13 @@ class Joiner {
   void rank() {
     if (!by_name_) {
       by_rank_ = asked_;
-      std::stable_sort(by_rank_.begin(), by_rank_.end(), [&](std::size_t a, std::size_t b) { return voxels_[a] < voxels_[b]; });
+      std::stable_sort(by_rank_.begin(), by_rank_.end(),
+                       [&](std::size_t a, std::size_t b) { return voxels_[a] < voxels_[b]; });
     } else {
       for (std::size_t f : asked_) {
         const auto covers = [&](std::size_t g) {
-          return voxels_[g] > voxels_[f] && static_cast<double>(shared_[pair(f, g)]) >= kCovered_rel * static_cast<double>(voxels_[f]);
+          return voxels_[g] > voxels_[f] &&
+                 static_cast<double>(shared_[pair(f, g)]) >= kCovered_rel * static_cast<double>(voxels_[f]);
         };
         by_rank_.insert(std::find_if(by_rank_.begin(), by_rank_.end(), covers), f);
       }
@@ -119,9 +121,12 @@ class Joiner {
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < segments_.size(); ++s) {
       if (own[s] > 0) order.push_back(s);
-      else if (is_asked_[s] && voxels_[s] == 0) volume_.warnings.push_back(warning_at(WarningCode::left_out, path_, name_of(segments_[s]) + " has no voxel and is left out"));
+      else if (is_asked_[s] && voxels_[s] == 0)
+        volume_.warnings.push_back(
+            warning_at(WarningCode::left_out, path_, name_of(segments_[s]) + " has no voxel and is left out"));
     }
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return segments_[a].number < segments_[b].number; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return segments_[a].number < segments_[b].number; });
     std::vector<std::uint16_t> target(segments_.size() + 1, 0);
     volume_.labels = {{0, ""}};
     for (std::size_t s : order) {
@@ -141,20 +146,27 @@ class Joiner {
         char mm3[48];
         std::snprintf(mm3, sizeof mm3, "%.4g mm3", static_cast<double>(shared) * volume_.voxel_volume_mm3());
         const std::string how_much = std::to_string(shared) + (shared == 1 ? " voxel, " : " voxels, ") + mm3;
-        const auto all_of = [&](std::size_t s) { return static_cast<double>(shared) >= kInside_rel * static_cast<double>(voxels_[s]); };
+        const auto all_of = [&](std::size_t s) {
+          return static_cast<double>(shared) >= kInside_rel * static_cast<double>(voxels_[s]);
+        };
         const std::string of_first = share(static_cast<double>(shared), static_cast<double>(voxels_[first])),
                           of_loser = share(static_cast<double>(shared), static_cast<double>(voxels_[loser]));
         if (all_of(loser))
-          volume_.warnings.push_back(warning_at(WarningCode::overlap, path_, name_of(segments_[loser]) + " lies wholly under " + name_of(segments_[first]) +
-                                     ", which has priority (" + how_much + ")"));
+          volume_.warnings.push_back(warning_at(WarningCode::overlap, path_,
+                                                name_of(segments_[loser]) + " lies wholly under " +
+                                                    name_of(segments_[first]) + ", which has priority (" + how_much +
+                                                    ")"));
         else if (all_of(first))
           inside[loser] += (inside[loser].empty() ? "" : ", ") + name_of(segments_[first]) + " (" + how_much + ")";
         else
-          volume_.warnings.push_back(warning_at(WarningCode::overlap, path_, name_of(segments_[first]) + " and " + name_of(segments_[loser]) + " overlap in " + how_much +
-                                     " (" + of_first + " and " + of_loser + " % of them), which went to " + name_of(segments_[first])));
+          volume_.warnings.push_back(warning_at(WarningCode::overlap, path_,
+                                                name_of(segments_[first]) + " and " + name_of(segments_[loser]) +
+                                                    " overlap in " + how_much + " (" + of_first + " and " + of_loser +
+                                                    " % of them), which went to " + name_of(segments_[first])));
       }
     for (const auto& [outer, names] : inside)
-      volume_.warnings.push_back(warning_at(WarningCode::taken_out, path_, "inside " + name_of(segments_[outer]) + ", and taken out of it: " + names));
+      volume_.warnings.push_back(warning_at(WarningCode::taken_out, path_,
+                                            "inside " + name_of(segments_[outer]) + ", and taken out of it: " + names));
   }
 
   const std::vector<LabelInfo>& segments_;
@@ -169,8 +181,8 @@ class Joiner {
 
 }  // namespace
 
-void join_segments(const std::vector<LabelInfo>& segments, const SliceLayers& layers, const std::string& labels, const std::string& path,
-                   LabelVolume& volume) {
+void join_segments(const std::vector<LabelInfo>& segments, const SliceLayers& layers, const std::string& labels,
+                   const std::string& path, LabelVolume& volume) {
   Joiner(segments, layers, labels, path, volume).run();
 }
 

@@ -49,7 +49,8 @@ std::set<int> segment_numbers(const TextHeader& header) {
 
 }  // namespace
 
-SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::array<double, 3>& size, int layers, const std::string& path) {
+SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::array<double, 3>& size, int layers,
+                                        const std::string& path) {
   SlicerSegmentation found;
   std::set<Label> values;
   bool own_numbers = true;
@@ -65,13 +66,15 @@ SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::arr
     if (!(value >= 0 && value < 2147483648.0) || value != std::floor(value))
       fail_input("the header is damaged: '" + key + "LabelValue'", path, "save the segmentation again");
     if (!(layer >= 0 && layer < layers) || layer != std::floor(layer))
-      fail_input("the header is damaged: '" + key + "Layer' names no layer of the " + std::to_string(layers), path, "save the segmentation again");
+      fail_input("the header is damaged: '" + key + "Layer' names no layer of the " + std::to_string(layers), path,
+                 "save the segmentation again");
     s.value = static_cast<Label>(value);
     s.layer = static_cast<int>(layer);
     const std::vector<double> colour = numbers(get("Color"), key + "Color", path);
     if (colour.size() == 3) {
       std::array<std::uint8_t, 3> rgb{};
-      for (int c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(colour[c], 0.0, 1.0)));
+      for (int c = 0; c < 3; ++c)
+        rgb[c] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(colour[c], 0.0, 1.0)));
       s.label.colour = rgb;
     }
     if (s.value == 0) continue;
@@ -82,10 +85,14 @@ SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::arr
   for (std::size_t i = 0; i < found.segments.size(); ++i)
     found.segments[i].label.number = own_numbers ? found.segments[i].value : static_cast<Label>(i + 1);
   if (!own_numbers)
-    found.warnings.push_back(warning_at(WarningCode::renumbered, path, "segments of different layers have the same label value; they are numbered in their order"));
+    found.warnings.push_back(
+        warning_at(WarningCode::renumbered, path,
+                   "segments of different layers have the same label value; they are numbered in their order"));
 
-  const std::vector<double> offset = numbers(header.get("=Segmentation_ReferenceImageExtentOffset"), "Segmentation_ReferenceImageExtentOffset", path);
-  const std::array<double, 3> first = offset.size() == 3 ? std::array<double, 3>{offset[0], offset[1], offset[2]} : std::array<double, 3>{0, 0, 0};
+  const std::vector<double> offset =
+      numbers(header.get("=Segmentation_ReferenceImageExtentOffset"), "Segmentation_ReferenceImageExtentOffset", path);
+  const std::array<double, 3> first =
+      offset.size() == 3 ? std::array<double, 3>{offset[0], offset[1], offset[2]} : std::array<double, 3>{0, 0, 0};
   std::array<double, 6> extent{};
   const bool known = reference_extent(header, extent, path);
   const bool shifted = first[0] != 0 || first[1] != 0 || first[2] != 0;

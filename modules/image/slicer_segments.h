@@ -19,12 +19,14 @@ struct SlicerSegment {
 /// What the header of a .seg.nrrd says; no segments where it is another NRRD file.
 struct SlicerSegmentation {
   std::vector<SlicerSegment> segments;
-  std::array<bool, 3> goes_on_low = {false, false, false}, goes_on_high = {false, false, false};  ///< the file is cropped there
+  /// the file is cropped there
+  std::array<bool, 3> goes_on_low = {false, false, false}, goes_on_high = {false, false, false};
   std::vector<Warning> warnings;
 };
 
 /// @param size voxels along x, y, z; `layers` is 1 for a file of three dimensions.
 /// @throws Error(input) naming the field
-SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::array<double, 3>& size, int layers, const std::string& path);
+SlicerSegmentation read_slicer_segments(const TextHeader& header, const std::array<double, 3>& size, int layers,
+                                        const std::string& path);
 
 }  // namespace stackmesh

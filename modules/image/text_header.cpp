@@ -33,8 +33,7 @@ std::vector<std::string> words(const std::string& text) {
 double to_number(const std::string& text, const std::string& field, const std::string& path) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0')
-    damaged("the header is damaged: '" + text + "' in field '" + field + "'", path);
+  if (text.empty() || *end != '\0') damaged("the header is damaged: '" + text + "' in field '" + field + "'", path);
   return value;
 }
 

@@ -32,12 +32,17 @@ class SilentTiff {
 /// The most that a compression can shrink data.
 double ratio_of(int compression) {
   switch (compression) {
-    case COMPRESSION_NONE: return 1;
-    case COMPRESSION_PACKBITS: return 70;
+    case COMPRESSION_NONE:
+      return 1;
+    case COMPRESSION_PACKBITS:
+      return 70;
     case COMPRESSION_DEFLATE:
-    case COMPRESSION_ADOBE_DEFLATE: return 1040;
-    case COMPRESSION_LZW: return 4096;
-    default: return 100000;
+    case COMPRESSION_ADOBE_DEFLATE:
+      return 1040;
+    case COMPRESSION_LZW:
+      return 4096;
+    default:
+      return 100000;
   }
 }
 
@@ -56,8 +61,12 @@ class TiffPage {
     choose_type();
     const double need = std::ceil(double(width_) * samples_ * bits_ / 8) * height_;
     if (need > ratio_of(compression_) * file_size + 65536) damaged();
-    if (TIFFIsCODECConfigured(compression_) == 0) fail_input("the TIFF's compression (number " + std::to_string(compression_) + ") is not supported", name_, "save it with LZW, deflate or no compression");
-    require_memory(static_cast<std::uint64_t>(need) + std::uint64_t{width_} * height_ * bytes_of(image_.type), "a slice of " + std::to_string(width_) + " x " + std::to_string(height_) + " pixels", name_, "crop it");
+    if (TIFFIsCODECConfigured(compression_) == 0)
+      fail_input("the TIFF's compression (number " + std::to_string(compression_) + ") is not supported", name_,
+                 "save it with LZW, deflate or no compression");
+    require_memory(static_cast<std::uint64_t>(need) + std::uint64_t{width_} * height_ * bytes_of(image_.type),
+                   "a slice of " + std::to_string(width_) + " x " + std::to_string(height_) + " pixels", name_,
+                   "crop it");
   }
 
   SliceImage run() {
@@ -73,12 +82,15 @@ class TiffPage {
   [[noreturn]] void damaged() const { fail_input("the TIFF file is damaged or truncated", name_, again); }
 
   void choose_type() {
-    const bool grey = photometric_ == PHOTOMETRIC_MINISBLACK || photometric_ == PHOTOMETRIC_MINISWHITE || photometric_ == PHOTOMETRIC_PALETTE;
+    const bool grey = photometric_ == PHOTOMETRIC_MINISBLACK || photometric_ == PHOTOMETRIC_MINISWHITE ||
+                      photometric_ == PHOTOMETRIC_PALETTE;
     if (!grey && photometric_ != PHOTOMETRIC_RGB)
-      fail_input("the slice is a colour image (photometric tag " + std::to_string(photometric_) + ")", name_, "save it as 8- or 16-bit greyscale with the label as grey value");
+      fail_input("the slice is a colour image (photometric tag " + std::to_string(photometric_) + ")", name_,
+                 "save it as 8- or 16-bit greyscale with the label as grey value");
     if (samples_ < 1 || samples_ > 16) damaged();
     colours_ = photometric_ == PHOTOMETRIC_RGB ? std::min<int>(samples_, 3) : 1;
-    const bool whole = format_ == SAMPLEFORMAT_UINT || format_ == SAMPLEFORMAT_INT || format_ == SAMPLEFORMAT_VOID, real = format_ == SAMPLEFORMAT_IEEEFP, is_signed = format_ == SAMPLEFORMAT_INT;
+    const bool whole = format_ == SAMPLEFORMAT_UINT || format_ == SAMPLEFORMAT_INT || format_ == SAMPLEFORMAT_VOID,
+               real = format_ == SAMPLEFORMAT_IEEEFP, is_signed = format_ == SAMPLEFORMAT_INT;
     if (whole && bits_ >= 1 && bits_ < 8 && !is_signed) image_.type = VoxelType::u8;
     else if (whole && bits_ == 8) image_.type = is_signed ? VoxelType::i8 : VoxelType::u8;
     else if (whole && bits_ > 8 && bits_ < 16 && !is_signed) image_.type = VoxelType::u16;
@@ -88,9 +100,16 @@ class TiffPage {
     else if (real && bits_ == 32) image_.type = VoxelType::f32;
     else if (real && bits_ == 64) image_.type = VoxelType::f64;
     else
-      fail_input("pixels of " + std::to_string(bits_) + " bits as " + (real ? "floating point" : is_signed ? "signed whole" : whole ? "whole" : "complex") + " numbers are not read from TIFF", name_,
-                 "save it with 8, 16 or 32 bits a pixel");
-    if (bits_ % 8 != 0 && samples_ != 1) fail_input("the slice is a colour image of " + std::to_string(bits_) + " bits", name_, "save it as 8- or 16-bit greyscale with the label as grey value");
+      fail_input("pixels of " + std::to_string(bits_) + " bits as " +
+                     (real        ? "floating point"
+                      : is_signed ? "signed whole"
+                      : whole     ? "whole"
+                                  : "complex") +
+                     " numbers are not read from TIFF",
+                 name_, "save it with 8, 16 or 32 bits a pixel");
+    if (bits_ % 8 != 0 && samples_ != 1)
+      fail_input("the slice is a colour image of " + std::to_string(bits_) + " bits", name_,
+                 "save it as 8- or 16-bit greyscale with the label as grey value");
   }
 
   /// Puts `count` pixels of a decoded row to (x, y). `row` holds every sample, or one plane.
@@ -100,7 +119,8 @@ class TiffPage {
     if (bits_ % 8 != 0) {  // packed, the highest bit first
       for (std::uint32_t i = 0; i < count; ++i) {
         std::uint32_t value = 0;
-        for (std::uint64_t bit = std::uint64_t{i} * bits_, end = bit + bits_; bit < end; ++bit) value = value << 1 | (row[bit / 8] >> (7 - bit % 8) & 1u);
+        for (std::uint64_t bit = std::uint64_t{i} * bits_, end = bit + bits_; bit < end; ++bit)
+          value = value << 1 | (row[bit / 8] >> (7 - bit % 8) & 1u);
         const auto two = static_cast<std::uint16_t>(value);
         if (bytes == 1) out[i] = static_cast<unsigned char>(value);
         else std::memcpy(out + 2 * std::size_t{i}, &two, 2);
@@ -112,12 +132,16 @@ class TiffPage {
     } else if (plane < colours_) {
       for (std::uint32_t i = 0; i < count; ++i)
         if (std::memcmp(out + i * bytes, row + i * bytes, bytes) != 0)
-          fail_input("the slice is a colour image", name_ + ", pixel (" + std::to_string(x + i) + ", " + std::to_string(y) + ")", "save it as 8- or 16-bit greyscale with the label as grey value");
+          fail_input("the slice is a colour image",
+                     name_ + ", pixel (" + std::to_string(x + i) + ", " + std::to_string(y) + ")",
+                     "save it as 8- or 16-bit greyscale with the label as grey value");
     }
   }
 
   int planes() const { return planar_ == PLANARCONFIG_SEPARATE ? colours_ : 1; }
-  std::size_t row_bytes(std::uint32_t columns) const { return (std::size_t{columns} * (planar_ == PLANARCONFIG_SEPARATE ? 1u : samples_) * bits_ + 7) / 8; }
+  std::size_t row_bytes(std::uint32_t columns) const {
+    return (std::size_t{columns} * (planar_ == PLANARCONFIG_SEPARATE ? 1u : samples_) * bits_ + 7) / 8;
+  }
 
   void read_rows() {
     const tmsize_t size = TIFFScanlineSize(file_);
@@ -135,7 +159,8 @@ class TiffPage {
     TIFFGetField(file_, TIFFTAG_TILEWIDTH, &tile_width);
     TIFFGetField(file_, TIFFTAG_TILELENGTH, &tile_height);
     const tmsize_t size = TIFFTileSize(file_), row = TIFFTileRowSize(file_);
-    if (tile_width == 0 || tile_height == 0 || tile_width > 65536 || tile_height > 65536 || size <= 0 || row <= 0 || static_cast<std::size_t>(row) < row_bytes(tile_width) ||
+    if (tile_width == 0 || tile_height == 0 || tile_width > 65536 || tile_height > 65536 || size <= 0 || row <= 0 ||
+        static_cast<std::size_t>(row) < row_bytes(tile_width) ||
         static_cast<double>(size) < static_cast<double>(row) * tile_height)
       damaged();
     require_memory(static_cast<std::uint64_t>(size), "a tile of the slice", name_, "save it with smaller tiles");
@@ -152,14 +177,16 @@ class TiffPage {
   TIFF* const file_;
   const std::string name_;
   std::uint32_t width_ = 0, height_ = 0;
-  std::uint16_t bits_ = 1, samples_ = 1, format_ = SAMPLEFORMAT_UINT, planar_ = PLANARCONFIG_CONTIG, compression_ = COMPRESSION_NONE, photometric_ = PHOTOMETRIC_MINISBLACK;
+  std::uint16_t bits_ = 1, samples_ = 1, format_ = SAMPLEFORMAT_UINT, planar_ = PLANARCONFIG_CONTIG,
+                compression_ = COMPRESSION_NONE, photometric_ = PHOTOMETRIC_MINISBLACK;
   int colours_ = 1;
   SliceImage image_;
 };
 
 }  // namespace
 
-void read_tiff(const std::string& path, std::vector<Warning>& warnings, const std::function<void(SliceImage&&, int, bool)>& page) {
+void read_tiff(const std::string& path, std::vector<Warning>& warnings,
+               const std::function<void(SliceImage&&, int, bool)>& page) {
   const SilentTiff silent;
   const auto size = static_cast<double>(size_of_file(path, path));
   const std::unique_ptr<TIFF, void (*)(TIFF*)> file(TIFFOpen(path.c_str(), "rm"), TIFFClose);
@@ -172,10 +199,12 @@ void read_tiff(const std::string& path, std::vector<Warning>& warnings, const st
     if ((kind & FILETYPE_REDUCEDIMAGE) != 0 && number > 1) reduced = true;
     else page(TiffPage(file.get(), size, name).run(), number, several);
     if (TIFFLastDirectory(file.get()) != 0) break;
-    if (TIFFReadDirectory(file.get()) != 1) fail_input("the TIFF file is damaged or truncated", path + ", page " + std::to_string(number + 1), again);
+    if (TIFFReadDirectory(file.get()) != 1)
+      fail_input("the TIFF file is damaged or truncated", path + ", page " + std::to_string(number + 1), again);
     several = true;
   }
-  if (reduced) warnings.push_back(warning_at(WarningCode::left_out, path, "pages that are smaller copies of others are left out"));
+  if (reduced)
+    warnings.push_back(warning_at(WarningCode::left_out, path, "pages that are smaller copies of others are left out"));
 }
 
 }  // namespace stackmesh

@@ -22,8 +22,8 @@ std::array<Vec3, 3> orthonormal_axes(std::array<Vec3, 3> a, const std::string& p
       worst = error <= worst ? worst : error;  // keeps a NaN
     }
   if (!(worst <= 2e-4))
-    fail_input("the voxel grid is sheared: its directions are not at right angles or not of unit length",
-               path, "resample the labels to a rectangular grid with nearest neighbour");
+    fail_input("the voxel grid is sheared: its directions are not at right angles or not of unit length", path,
+               "resample the labels to a rectangular grid with nearest neighbour");
   for (int pass = 0; worst > 1e-15 && pass < 3; ++pass) {
     // One step of the polar decomposition treats all axes alike: A <- A (3 I - A^T A) / 2.
     const std::array<Vec3, 3> b = a;
@@ -68,16 +68,26 @@ std::size_t voxels_of(const VolumeHeader& header) {
 template <class Read>
 void by_type(VoxelType type, Read read) {
   switch (type) {
-    case VoxelType::u8: return read(std::uint8_t());
-    case VoxelType::i8: return read(std::int8_t());
-    case VoxelType::u16: return read(std::uint16_t());
-    case VoxelType::i16: return read(std::int16_t());
-    case VoxelType::u32: return read(std::uint32_t());
-    case VoxelType::i32: return read(std::int32_t());
-    case VoxelType::u64: return read(std::uint64_t());
-    case VoxelType::i64: return read(std::int64_t());
-    case VoxelType::f32: return read(float());
-    case VoxelType::f64: return read(double());
+    case VoxelType::u8:
+      return read(std::uint8_t());
+    case VoxelType::i8:
+      return read(std::int8_t());
+    case VoxelType::u16:
+      return read(std::uint16_t());
+    case VoxelType::i16:
+      return read(std::int16_t());
+    case VoxelType::u32:
+      return read(std::uint32_t());
+    case VoxelType::i32:
+      return read(std::int32_t());
+    case VoxelType::u64:
+      return read(std::uint64_t());
+    case VoxelType::i64:
+      return read(std::int64_t());
+    case VoxelType::f32:
+      return read(float());
+    case VoxelType::f64:
+      return read(double());
   }
 }
 
@@ -89,13 +99,17 @@ void read_values(const VolumeHeader& header, const std::string& path, T* values,
     std::size_t bad = 0;
     for (std::uint64_t i = 0; header.nan_is_zero && i < header.data.count; ++i)
       if (!std::isfinite(values[i])) values[i] = 0, ++bad;
-    if (bad > 0) warnings.push_back(warning_at(WarningCode::values_changed, path, std::to_string(bad) + (bad == 1 ? " value that is" : " values that are") + " not finite, taken as 0"));
+    if (bad > 0)
+      warnings.push_back(warning_at(
+          WarningCode::values_changed, path,
+          std::to_string(bad) + (bad == 1 ? " value that is" : " values that are") + " not finite, taken as 0"));
   }
 }
 
 class LabelReader {
  public:
-  LabelReader(const VolumeHeader& header, const std::string& path, LabelVolume& volume) : header_(header), path_(path), volume_(volume) {}
+  LabelReader(const VolumeHeader& header, const std::string& path, LabelVolume& volume)
+      : header_(header), path_(path), volume_(volume) {}
 
   void run() {
     by_type(header_.data.type, [&](auto t) { read(t); });
@@ -105,8 +119,10 @@ class LabelReader {
  private:
   Palette::Where where(std::size_t first = 0) const {
     return [this, first](std::size_t offset) {
-      const std::size_t i = first + offset, x = i % volume_.size[0], y = i / volume_.size[0] % volume_.size[1], z = i / volume_.size[0] / volume_.size[1];
-      return std::pair<std::string, std::string>(path_, "voxel (" + std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) + ")");
+      const std::size_t i = first + offset, x = i % volume_.size[0], y = i / volume_.size[0] % volume_.size[1],
+                        z = i / volume_.size[0] / volume_.size[1];
+      return std::pair<std::string, std::string>(
+          path_, "voxel (" + std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) + ")");
     };
   }
 
@@ -122,7 +138,8 @@ class LabelReader {
       palette_.convert(raw, volume_.voxels.data(), count, where());
       return;
     }
-    require_memory((2 + sizeof(T)) * count, "the labels of " + std::to_string(count) + " voxels", path_, "crop the volume, or store it as 8- or 16-bit whole numbers");
+    require_memory((2 + sizeof(T)) * count, "the labels of " + std::to_string(count) + " voxels", path_,
+                   "crop the volume, or store it as 8- or 16-bit whole numbers");
     const std::unique_ptr<T[]> raw(new T[count]);
     read_values(header_, path_, raw.get(), volume_.warnings);
     volume_.voxels.resize(count);
@@ -152,7 +169,8 @@ class LabelReader {
 /// Reads the voxels of a segmentation whose segments may overlap: a value for every layer.
 template <class T>
 void read_layers(const VolumeHeader& header, const std::string& path, const std::string& labels, LabelVolume& volume) {
-  const auto layers = static_cast<std::size_t>(header.layers), pixels = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
+  const auto layers = static_cast<std::size_t>(header.layers),
+             pixels = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
   require_memory(header.data.bytes() + 2 * pixels * volume.size[2], "the layers of a segmentation", path, "crop it");
   const std::unique_ptr<T[]> raw(new T[header.data.count]);
   read_voxel_data(header.data, path, raw.get(), volume.warnings);
@@ -165,11 +183,13 @@ void read_layers(const VolumeHeader& header, const std::string& path, const std:
         std::vector<std::vector<std::uint16_t>> out(layers, std::vector<std::uint16_t>(pixels, 0));
         for (std::size_t l = 0; l < layers; ++l)
           for (std::size_t i = 0; i < pixels; ++i) {
-            const T value = raw[i % volume.size[0] * step[0] + i / volume.size[0] * step[1] + static_cast<std::uint64_t>(k) * step[2] + l * step[3]];
+            const T value = raw[i % volume.size[0] * step[0] + i / volume.size[0] * step[1] +
+                                static_cast<std::uint64_t>(k) * step[2] + l * step[3]];
             if (value == 0) continue;
             for (std::size_t s = 0; s < segments.size() && out[l][i] == 0; ++s) {
               const SlicerSegment& segment = header.segmentation.segments[s];
-              if (segment.layer == static_cast<int>(l) && static_cast<T>(segment.value) == value) out[l][i] = static_cast<std::uint16_t>(s + 1);
+              if (segment.layer == static_cast<int>(l) && static_cast<T>(segment.value) == value)
+                out[l][i] = static_cast<std::uint16_t>(s + 1);
             }
           }
         return out;
@@ -179,7 +199,8 @@ void read_layers(const VolumeHeader& header, const std::string& path, const std:
 
 }  // namespace
 
-LabelVolume read_volume_file(const std::string& path, FileFormat format, const std::string& labels, bool allow_outside) {
+LabelVolume read_volume_file(const std::string& path, FileFormat format, const std::string& labels,
+                             bool allow_outside) {
   const VolumeHeader header = read_volume_header(path, format, allow_outside);
   LabelVolume volume;
   volume.kind = kind_of(format);
@@ -189,7 +210,9 @@ LabelVolume read_volume_file(const std::string& path, FileFormat format, const s
     by_type(header.data.type, [&](auto t) {
       using T = decltype(t);
       if constexpr (std::is_integral_v<T> && sizeof(T) <= 4) read_layers<T>(header, path, labels, volume);
-      else fail_input("the voxel type of the segmentation's layers is not read", path, "store them as whole numbers of 8 to 32 bits");
+      else
+        fail_input("the voxel type of the segmentation's layers is not read", path,
+                   "store them as whole numbers of 8 to 32 bits");
     });
   } else {
     LabelReader(header, path, volume).run();
@@ -208,14 +231,17 @@ LabelVolume read_volume_file(const std::string& path, FileFormat format, const s
 
 IntensityVolume read_intensity_file(const std::string& path, FileFormat format, bool allow_outside) {
   const VolumeHeader header = read_volume_header(path, format, allow_outside);
-  if (header.layers > 1) fail_input("the image has more than three dimensions or several values a voxel", path, "give an image, not a segmentation");
+  if (header.layers > 1)
+    fail_input("the image has more than three dimensions or several values a voxel", path,
+               "give an image, not a segmentation");
   IntensityVolume image;
   image.warnings = header.warnings;
   take_grid(header, image, path);
   const std::size_t count = voxels_of(header);
   by_type(header.data.type, [&](auto t) {
     using T = decltype(t);
-    require_memory((sizeof(float) + (std::is_same_v<T, float> ? 0 : sizeof(T))) * count, "the intensities of " + std::to_string(count) + " voxels", path, "crop the image");
+    require_memory((sizeof(float) + (std::is_same_v<T, float> ? 0 : sizeof(T))) * count,
+                   "the intensities of " + std::to_string(count) + " voxels", path, "crop the image");
     image.values.resize(count);
     if constexpr (std::is_same_v<T, float>) {
       read_values(header, path, image.values.data(), image.warnings);
@@ -224,7 +250,8 @@ IntensityVolume read_intensity_file(const std::string& path, FileFormat format, 
     } else {
       const std::unique_ptr<T[]> raw(new T[count]);
       read_values(header, path, raw.get(), image.warnings);
-      for (std::size_t i = 0; i < count; ++i) image.values[i] = static_cast<float>(header.slope * static_cast<double>(raw[i]) + header.intercept);
+      for (std::size_t i = 0; i < count; ++i)
+        image.values[i] = static_cast<float>(header.slope * static_cast<double>(raw[i]) + header.intercept);
     }
   });
   image.kind = kind_of(format);

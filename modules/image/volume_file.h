@@ -9,8 +9,10 @@
 namespace stackmesh {
 
 /// Reads one volume file; it may hold nothing but background. `labels` is the order of priority where the file
-/// holds segments that overlap; those that it does not name are then left out. `allow_outside`: a detached header may name files outside of its folder. @throws Error(input)
-LabelVolume read_volume_file(const std::string& path, FileFormat format, const std::string& labels = "", bool allow_outside = false);
+/// holds segments that overlap; those that it does not name are then left out. `allow_outside`: a detached header may
+/// name files outside of its folder. @throws Error(input)
+LabelVolume read_volume_file(const std::string& path, FileFormat format, const std::string& labels = "",
+                             bool allow_outside = false);
 
 /// Reads the intensities of one volume file. @throws Error(input)
 IntensityVolume read_intensity_file(const std::string& path, FileFormat format, bool allow_outside = false);

@@ -10,24 +10,29 @@
 
 namespace stackmesh {
 
-/// What the header of a volume file says. The reader needs no other library, so that nothing is mended or overlooked in silence.
+/// What the header of a volume file says. The reader needs no other library, so that nothing is mended or overlooked in
+/// silence.
 struct VolumeHeader {
   std::array<int, 3> size = {1, 1, 1};
   std::array<double, 3> spacing_mm = {1, 1, 1};
   Vec3 origin_mm;  ///< centre of voxel (0, 0, 0), LPS
-  std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< of unit length, LPS; at right angles only nearly
+  /// of unit length, LPS; at right angles only nearly
+  std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   VoxelData data;
-  int layers = 1;                      ///< values a voxel, of segments that overlap
-  std::array<std::uint64_t, 4> step = {};  ///< values from one voxel to the next along x, y, z, and from layer to layer; set where layers > 1
-  double slope = 1, intercept = 0;     ///< what stands for a stored value v is slope * v + intercept
-  bool nan_is_zero = false;            ///< NIfTI: values that are not finite stand for nothing, as its own library reads them
-  SlicerSegmentation segmentation;     ///< NRRD: the segments of 3D Slicer, where it names any
+  int layers = 1;  ///< values a voxel, of segments that overlap
+  /// values from one voxel to the next along x, y, z, and from layer to layer; set where layers > 1
+  std::array<std::uint64_t, 4> step = {};
+  double slope = 1, intercept = 0;  ///< what stands for a stored value v is slope * v + intercept
+  /// NIfTI: values that are not finite stand for nothing, as its own library reads them
+  bool nan_is_zero = false;
+  SlicerSegmentation segmentation;  ///< NRRD: the segments of 3D Slicer, where it names any
   std::vector<Warning> warnings;
   bool is_scaled() const { return slope != 1 || intercept != 0; }
 };
 
 /// Reads the header of a volume file: sizes, spacing, directions, where the voxels are, and that their bytes are there.
-/// A header that names other files may name those of its own folder (and of folders therein); `allow_outside` lets it name any.
+/// A header that names other files may name those of its own folder (and of folders therein); `allow_outside` lets it
+/// name any.
 /// @throws Error(input)
 VolumeHeader read_volume_header(const std::string& path, FileFormat format, bool allow_outside = false);
 

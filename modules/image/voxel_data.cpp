@@ -21,10 +21,13 @@ namespace stackmesh {
 namespace {
 
 constexpr const char* again = "copy or export the file again";
-constexpr std::uint64_t kRatio = 1040;              // deflate's largest, and a little
-constexpr std::uint64_t kTail = std::uint64_t{16} << 20;  // decoded bytes behind the voxels that are looked at for the check sum
+constexpr std::uint64_t kRatio = 1040;  // deflate's largest, and a little
+// decoded bytes behind the voxels that are looked at for the check sum
+constexpr std::uint64_t kTail = std::uint64_t{16} << 20;
 
-[[noreturn]] void damaged(const std::string& what, const std::string& path) { fail_input(what, path, again); }
+[[noreturn]] void damaged(const std::string& what, const std::string& path) {
+  fail_input(what, path, again);
+}
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -46,7 +49,9 @@ std::uint64_t bytes_there(const DataPart& part, const std::string& path) {
 }
 
 [[noreturn]] void truncated(std::uint64_t have, std::uint64_t need, const std::string& place) {
-  damaged("the file is truncated: " + std::to_string(have) + " bytes of voxels where its header needs " + std::to_string(need), place);
+  damaged("the file is truncated: " + std::to_string(have) + " bytes of voxels where its header needs " +
+              std::to_string(need),
+          place);
 }
 
 bool begins_as_gzip(const DataPart& part) {
@@ -72,7 +77,8 @@ void read_raw(const DataPart& part, const std::string& path, unsigned char* out,
 /// Decompresses a stream piece by piece, all of its gzip members.
 class Inflater {
  public:
-  Inflater(const DataPart& part, const std::string& path) : place_(where(part, path)), file_(open_at(part)), left_(part.size), in_(1 << 16) {
+  Inflater(const DataPart& part, const std::string& path)
+      : place_(where(part, path)), file_(open_at(part)), left_(part.size), in_(1 << 16) {
     if (inflateInit2(&stream_, 15 + 32) != Z_OK) throw std::bad_alloc();
   }
   ~Inflater() { inflateEnd(&stream_); }
@@ -98,8 +104,10 @@ class Inflater {
       const int code = inflate(&stream_, Z_NO_FLUSH);
       made += room - stream_.avail_out;
       if (code == Z_STREAM_END) complete_ = true;
-      else if (code == Z_NEED_DICT) damaged("cannot read the voxels: they are compressed with a dictionary that is not in the file", place_);
-      else if (code != Z_OK && code != Z_BUF_ERROR) damaged("cannot read the voxels: its compressed data are damaged", place_);
+      else if (code == Z_NEED_DICT)
+        damaged("cannot read the voxels: they are compressed with a dictionary that is not in the file", place_);
+      else if (code != Z_OK && code != Z_BUF_ERROR)
+        damaged("cannot read the voxels: its compressed data are damaged", place_);
     }
     return made;
   }
@@ -123,7 +131,8 @@ class Inflater {
   bool complete_ = false, ended_ = false;
 };
 
-void inflate_part(const DataPart& part, const std::string& path, unsigned char* out, std::uint64_t need, std::vector<Warning>& warnings) {
+void inflate_part(const DataPart& part, const std::string& path, unsigned char* out, std::uint64_t need,
+                  std::vector<Warning>& warnings) {
   Inflater stream(part, path);
   std::vector<unsigned char> rest(1 << 16);
   for (std::uint64_t left = part.skip; left > 0;) {
@@ -133,14 +142,20 @@ void inflate_part(const DataPart& part, const std::string& path, unsigned char* 
   }
   const std::uint64_t made = stream.read(out, need);
   std::uint64_t behind = 0;
-  for (std::uint64_t got = 1; got > 0 && behind <= kTail; behind += got = stream.read(rest.data(), rest.size())) {}
+  for (std::uint64_t got = 1; got > 0 && behind <= kTail; behind += got = stream.read(rest.data(), rest.size())) {
+  }
   if (behind > kTail) {
-    warnings.push_back(warning_at(WarningCode::left_out, where(part, path), "more data than its header says follow the voxels; they are not read, and the check sum at their end is not verified"));
+    warnings.push_back(warning_at(WarningCode::left_out, where(part, path),
+                                  "more data than its header says follow the voxels; they are not read, and the check "
+                                  "sum at their end is not verified"));
     return;
   }
-  if (!stream.complete()) damaged("cannot read the voxels: it is truncated: the compressed data end too early", where(part, path));
+  if (!stream.complete())
+    damaged("cannot read the voxels: it is truncated: the compressed data end too early", where(part, path));
   if (made < need)
-    damaged("cannot read the voxels: it is truncated: " + std::to_string(made) + " bytes where its header needs " + std::to_string(need), where(part, path));
+    damaged("cannot read the voxels: it is truncated: " + std::to_string(made) + " bytes where its header needs " +
+                std::to_string(need),
+            where(part, path));
 }
 
 /// Characters of a file's stretch, one after another.
@@ -166,7 +181,8 @@ void put(double value, const std::string& word, unsigned char* out, const std::s
   } else {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), stored);
     if (error != std::errc() || end != word.data() + word.size()) {  // "1.0", "1e3"
-      constexpr double low = static_cast<double>(std::numeric_limits<T>::min()), high = static_cast<double>(std::numeric_limits<T>::max());
+      constexpr double low = static_cast<double>(std::numeric_limits<T>::min()),
+                       high = static_cast<double>(std::numeric_limits<T>::max());
       if (!(value >= low && value <= high) || value != std::floor(value) || value >= 18446744073709551616.0)
         damaged("the number '" + word.substr(0, 40) + "' does not fit the voxel type that its header names", place);
       stored = static_cast<T>(value);
@@ -179,16 +195,26 @@ using Put = void (*)(double, const std::string&, unsigned char*, const std::stri
 
 Put put_of(VoxelType type) {
   switch (type) {
-    case VoxelType::u8: return put<std::uint8_t>;
-    case VoxelType::i8: return put<std::int8_t>;
-    case VoxelType::u16: return put<std::uint16_t>;
-    case VoxelType::i16: return put<std::int16_t>;
-    case VoxelType::u32: return put<std::uint32_t>;
-    case VoxelType::i32: return put<std::int32_t>;
-    case VoxelType::u64: return put<std::uint64_t>;
-    case VoxelType::i64: return put<std::int64_t>;
-    case VoxelType::f32: return put<float>;
-    case VoxelType::f64: return put<double>;
+    case VoxelType::u8:
+      return put<std::uint8_t>;
+    case VoxelType::i8:
+      return put<std::int8_t>;
+    case VoxelType::u16:
+      return put<std::uint16_t>;
+    case VoxelType::i16:
+      return put<std::int16_t>;
+    case VoxelType::u32:
+      return put<std::uint32_t>;
+    case VoxelType::i32:
+      return put<std::int32_t>;
+    case VoxelType::u64:
+      return put<std::uint64_t>;
+    case VoxelType::i64:
+      return put<std::int64_t>;
+    case VoxelType::f32:
+      return put<float>;
+    case VoxelType::f64:
+      return put<double>;
   }
   fail_internal("unknown voxel type", "image module");
 }
@@ -205,7 +231,10 @@ void read_text(const DataPart& part, const std::string& path, VoxelType type, un
     while (c != EOF && separates(c)) c = in.next();
     for (; !separates(c); c = in.next())
       if (word.size() < 400) word += static_cast<char>(c);
-    if (word.empty()) damaged("the file is truncated: " + std::to_string(i) + " numbers where its header needs " + std::to_string(count), place);
+    if (word.empty())
+      damaged(
+          "the file is truncated: " + std::to_string(i) + " numbers where its header needs " + std::to_string(count),
+          place);
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
     if (*end != '\0') damaged("'" + word.substr(0, 40) + "' where a number of the voxels belongs", place);
@@ -237,7 +266,8 @@ bool is_big_endian_machine() {
 }
 
 std::uint64_t share_of(const VoxelData& data) {
-  if (data.parts.empty() || data.count % data.parts.size() != 0) fail_internal("voxels in unequal parts", "image module");
+  if (data.parts.empty() || data.count % data.parts.size() != 0)
+    fail_internal("voxels in unequal parts", "image module");
   return data.count / data.parts.size();
 }
 
@@ -246,19 +276,24 @@ std::uint64_t share_of(const VoxelData& data) {
 std::size_t bytes_of(VoxelType type) {
   switch (type) {
     case VoxelType::u8:
-    case VoxelType::i8: return 1;
+    case VoxelType::i8:
+      return 1;
     case VoxelType::u16:
-    case VoxelType::i16: return 2;
+    case VoxelType::i16:
+      return 2;
     case VoxelType::u64:
     case VoxelType::i64:
-    case VoxelType::f64: return 8;
-    default: return 4;
+    case VoxelType::f64:
+      return 8;
+    default:
+      return 4;
   }
 }
 
 std::uint64_t size_of_file(const std::string& path, const std::string& what) {
   struct stat info;
-  if (::stat(path.c_str(), &info) != 0) fail_input("a file is missing or cannot be read", what, "put it beside its header, and check that you may read it");
+  if (::stat(path.c_str(), &info) != 0)
+    fail_input("a file is missing or cannot be read", what, "put it beside its header, and check that you may read it");
   if (!S_ISREG(info.st_mode)) fail_input("this is no regular file", what, "give a file");
   return static_cast<std::uint64_t>(info.st_size);
 }
@@ -287,9 +322,12 @@ void require_inflated(const DataPart& part, const std::string& path, std::uint64
   Inflater stream(part, path);
   std::vector<unsigned char> piece(1 << 18);
   std::uint64_t made = 0;
-  for (std::uint64_t got = 1; got > 0 && made < need; made += got = stream.read(piece.data(), piece.size())) {}
+  for (std::uint64_t got = 1; got > 0 && made < need; made += got = stream.read(piece.data(), piece.size())) {
+  }
   if (made < need)
-    damaged("cannot read the voxels: it is truncated: " + std::to_string(made) + " bytes where its header needs " + std::to_string(need), where(part, path));
+    damaged("cannot read the voxels: it is truncated: " + std::to_string(made) + " bytes where its header needs " +
+                std::to_string(need),
+            where(part, path));
 }
 
 }  // namespace
@@ -301,14 +339,16 @@ void check_voxel_data(const VoxelData& data, const std::string& path, std::vecto
     switch (encoding_of(data, part)) {
       case VoxelEncoding::deflate:
         if (have * kRatio + 4096 < part.skip + need)
-          damaged("the file is truncated or its header is wrong: " + std::to_string(have) + " compressed bytes cannot hold the " +
-                      std::to_string(part.skip + need) + " its header needs",
+          damaged("the file is truncated or its header is wrong: " + std::to_string(have) +
+                      " compressed bytes cannot hold the " + std::to_string(part.skip + need) + " its header needs",
                   where(part, path));
         if (need > kLarge && need / 20 > have) require_inflated(part, path, part.skip + need);
         break;
       case VoxelEncoding::text:
         if (have < 2 * share - 1)
-          damaged("the file is truncated: " + std::to_string(have) + " characters cannot hold the " + std::to_string(share) + " numbers its header needs", where(part, path));
+          damaged("the file is truncated: " + std::to_string(have) + " characters cannot hold the " +
+                      std::to_string(share) + " numbers its header needs",
+                  where(part, path));
         break;
       case VoxelEncoding::hex:
         if (have < 2 * need) truncated(have / 2, need, where(part, path));
@@ -316,9 +356,12 @@ void check_voxel_data(const VoxelData& data, const std::string& path, std::vecto
       default:
         if (have < part.skip + need) truncated(have > part.skip ? have - part.skip : 0, need, where(part, path));
         if (part.path == path || part.at_end || have == part.skip + need) break;
-        const std::string longer = "holds " + std::to_string(have) + " bytes where its header needs " + std::to_string(part.skip + need);
+        const std::string longer =
+            "holds " + std::to_string(have) + " bytes where its header needs " + std::to_string(part.skip + need);
         if (data.parts.size() > 1)
-          fail_input("a data file " + longer, where(part, path), "correct the sizes and the type in the header, or give the length of what is in front (HeaderSize, byte skip)");
+          fail_input("a data file " + longer, where(part, path),
+                     "correct the sizes and the type in the header, or give the length of what is in front "
+                     "(HeaderSize, byte skip)");
         warnings.push_back(warning_at(WarningCode::left_out, where(part, path), longer + "; the rest is not read"));
     }
   }
@@ -330,12 +373,20 @@ void read_voxel_data(const VoxelData& data, const std::string& path, void* memor
   for (const DataPart& part : data.parts) {
     const VoxelEncoding encoding = encoding_of(data, part);
     switch (encoding) {
-      case VoxelEncoding::deflate: inflate_part(part, path, out, share * size, warnings); break;
-      case VoxelEncoding::text: read_text(part, path, data.type, out, share); break;
-      case VoxelEncoding::hex: read_hex(part, path, out, share * size); break;
-      default: read_raw(part, path, out, share * size);
+      case VoxelEncoding::deflate:
+        inflate_part(part, path, out, share * size, warnings);
+        break;
+      case VoxelEncoding::text:
+        read_text(part, path, data.type, out, share);
+        break;
+      case VoxelEncoding::hex:
+        read_hex(part, path, out, share * size);
+        break;
+      default:
+        read_raw(part, path, out, share * size);
     }
-    if (size > 1 && encoding != VoxelEncoding::text && data.big_endian != is_big_endian_machine()) swap_bytes(out, share, size);
+    if (size > 1 && encoding != VoxelEncoding::text && data.big_endian != is_big_endian_machine())
+      swap_bytes(out, share, size);
     out += share * size;
   }
 }

@@ -18,12 +18,15 @@ struct Piece {
 };
 
 /// Sorts a label's pieces and says which go.
-std::vector<std::int32_t> left_out(Label label, std::vector<Piece> pieces, const PieceOptions& o, std::vector<Warning>& warnings) {
-  std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.volume_mm3 > b.volume_mm3; });
+std::vector<std::int32_t> left_out(Label label, std::vector<Piece> pieces, const PieceOptions& o,
+                                   std::vector<Warning>& warnings) {
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const Piece& a, const Piece& b) { return a.volume_mm3 > b.volume_mm3; });
   std::vector<std::int32_t> out;
   double volume = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const bool kept = (!o.keep_largest || i < static_cast<std::size_t>(*o.keep_largest)) && (!o.min_piece_mm3 || pieces[i].volume_mm3 >= *o.min_piece_mm3);
+    const bool kept = (!o.keep_largest || i < static_cast<std::size_t>(*o.keep_largest)) &&
+                      (!o.min_piece_mm3 || pieces[i].volume_mm3 >= *o.min_piece_mm3);
     if (kept) continue;
     out.push_back(pieces[i].id);
     volume += pieces[i].volume_mm3;
@@ -31,8 +34,10 @@ std::vector<std::int32_t> left_out(Label label, std::vector<Piece> pieces, const
   if (!out.empty()) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", volume);
-    warnings.push_back(warning_at(WarningCode::pieces_left_out, "label " + std::to_string(label), std::to_string(out.size()) + " of its " + std::to_string(pieces.size()) + " pieces, " + text +
-                       " mm3 together, are left out, as --keep-largest or --min-piece asks"));
+    warnings.push_back(warning_at(WarningCode::pieces_left_out, "label " + std::to_string(label),
+                                  std::to_string(out.size()) + " of its " + std::to_string(pieces.size()) +
+                                      " pieces, " + text +
+                                      " mm3 together, are left out, as --keep-largest or --min-piece asks"));
   }
   return out;
 }
@@ -85,7 +90,8 @@ void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<W
   for (std::size_t p = 0; p < voxels.size(); ++p)
     if (voxels[p] != 0) ++count[sets.find(static_cast<std::int32_t>(p))];
   std::vector<std::vector<Piece>> of_label(volume.labels.size());
-  for (const auto& [root, voxels_of] : count) of_label[voxels[root]].push_back({root, static_cast<double>(voxels_of) * volume.voxel_volume_mm3()});
+  for (const auto& [root, voxels_of] : count)
+    of_label[voxels[root]].push_back({root, static_cast<double>(voxels_of) * volume.voxel_volume_mm3()});
   std::vector<std::int32_t> gone;
   for (std::size_t l = 1; l < of_label.size(); ++l)
     for (std::int32_t root : left_out(volume.labels[l].number, of_label[l], options, warnings)) gone.push_back(root);
@@ -93,7 +99,8 @@ void keep_pieces(LabelVolume& volume, const PieceOptions& options, std::vector<W
   if (gone.empty()) return;
   if (gone.size() == count.size()) fail_empty(options);
   for (std::size_t p = 0; p < voxels.size(); ++p)
-    if (voxels[p] != 0 && std::binary_search(gone.begin(), gone.end(), sets.find(static_cast<std::int32_t>(p)))) voxels[p] = 0;
+    if (voxels[p] != 0 && std::binary_search(gone.begin(), gone.end(), sets.find(static_cast<std::int32_t>(p))))
+      voxels[p] = 0;
 }
 
 void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::vector<Warning>& warnings) {
@@ -109,8 +116,11 @@ void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::ve
     piece_of[s] = static_cast<std::int32_t>(s);
     if (b.piece_volume_mm3[s] > 0) continue;
     for (std::size_t o = 0; o < shells; ++o) {
-      if (b.piece_row[o] != b.piece_row[s] || !(b.piece_volume_mm3[o] > -b.piece_volume_mm3[s]) || !goes_round(complex, b, static_cast<std::int32_t>(o), complex.points[point[s]])) continue;
-      if (piece_of[s] == static_cast<std::int32_t>(s) || b.piece_volume_mm3[o] < b.piece_volume_mm3[piece_of[s]]) piece_of[s] = static_cast<std::int32_t>(o);
+      if (b.piece_row[o] != b.piece_row[s] || !(b.piece_volume_mm3[o] > -b.piece_volume_mm3[s]) ||
+          !goes_round(complex, b, static_cast<std::int32_t>(o), complex.points[point[s]]))
+        continue;
+      if (piece_of[s] == static_cast<std::int32_t>(s) || b.piece_volume_mm3[o] < b.piece_volume_mm3[piece_of[s]])
+        piece_of[s] = static_cast<std::int32_t>(o);
     }
     if (piece_of[s] != static_cast<std::int32_t>(s)) volume[piece_of[s]] += b.piece_volume_mm3[s];
   }
@@ -118,7 +128,8 @@ void keep_pieces(InterfaceComplex& complex, const PieceOptions& options, std::ve
   for (std::size_t row = 0; row < b.labels.size(); ++row) {
     std::vector<Piece> pieces;
     for (std::size_t s = 0; s < shells; ++s)
-      if (b.piece_row[s] == static_cast<std::int32_t>(row) && b.piece_volume_mm3[s] > 0) pieces.push_back({static_cast<std::int32_t>(s), volume[s]});
+      if (b.piece_row[s] == static_cast<std::int32_t>(row) && b.piece_volume_mm3[s] > 0)
+        pieces.push_back({static_cast<std::int32_t>(s), volume[s]});
     for (std::int32_t s : left_out(b.labels[row].label, pieces, options, warnings)) gone[s] = 1;
   }
   for (std::size_t s = 0; s < shells; ++s) gone[s] = gone[piece_of[s]];

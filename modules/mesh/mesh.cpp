@@ -21,7 +21,8 @@ void refuse_too_small(const std::map<Label, double>& volume_mm3, const MeshOptio
   double filled = 0, bounded = 0;
   for (const auto& [label, mm3] : volume_mm3) {
     if (o.voids.count(label) == 0) filled += mm3;
-    if (const auto most = o.fill.label_max_volume_mm3.find(label); most != o.fill.label_max_volume_mm3.end()) bounded += 1.5 * mm3 / most->second;
+    if (const auto most = o.fill.label_max_volume_mm3.find(label); most != o.fill.label_max_volume_mm3.end())
+      bounded += 1.5 * mm3 / most->second;
   }
   if (o.fill.max_volume_mm3) refuse_too_many(1.5 * filled / *o.fill.max_volume_mm3, o);
   refuse_too_many(bounded, o);
@@ -30,7 +31,8 @@ void refuse_too_small(const std::map<Label, double>& volume_mm3, const MeshOptio
 std::map<Label, double> volumes_of(const LabelVolume& v) {
   const std::vector<std::size_t> counts = count_voxels(v);
   std::map<Label, double> mm3;
-  for (std::size_t k = 1; k < v.labels.size(); ++k) mm3[v.labels[k].number] = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
+  for (std::size_t k = 1; k < v.labels.size(); ++k)
+    mm3[v.labels[k].number] = static_cast<double>(counts[k]) * v.voxel_volume_mm3();
   return mm3;
 }
 
@@ -69,11 +71,14 @@ std::optional<Refusal> refusal_of(const LabelMesh& m, std::optional<Refusal> of_
   Refusal no = of_tets.value_or(Refusal{});
   const SurfaceCheck& s = m.surface_check;
   if (s.open_edges > 0 || s.self_intersections > 0) {
-    no.problem = "the stitched surface has " + std::to_string(s.open_edges) + " open edges and " + std::to_string(s.self_intersections) + " self-intersections";
+    no.problem = "the stitched surface has " + std::to_string(s.open_edges) + " open edges and " +
+                 std::to_string(s.self_intersections) + " self-intersections";
     for (const auto& pair : s.intersecting_pairs) no.triangles.insert(no.triangles.end(), pair.begin(), pair.end());
   } else if (m.tets_check && (m.tets_check->inverted > 0 || !m.tets_check->conforms)) {
-    no.problem = "the volume mesh has " + std::to_string(m.tets_check->inverted) + " inverted " + (m.tets->wedges.empty() ? "tetrahedra" : "elements") + " and " +
-                 std::to_string(m.tets_check->nonconforming_faces + m.tets_check->nonconforming_edges) + " faces or edges that do not conform";
+    no.problem = "the volume mesh has " + std::to_string(m.tets_check->inverted) + " inverted " +
+                 (m.tets->wedges.empty() ? "tetrahedra" : "elements") + " and " +
+                 std::to_string(m.tets_check->nonconforming_faces + m.tets_check->nonconforming_edges) +
+                 " faces or edges that do not conform";
   }
   if (no.problem.empty()) return std::nullopt;
   if (no.mend.empty()) no.mend = "try --simplify 0, and report the input";
@@ -86,8 +91,11 @@ void warn_of_flat_tets(const LabelMesh& m, std::vector<Warning>& warnings) {
   const VolumeCheck& v = *m.tets_check;
   if (m.level != SurfaceLevel::enhanced || (v.dihedral_min_deg >= 1 && v.dihedral_max_deg <= 179)) return;
   char text[120];
-  std::snprintf(text, sizeof text, "the flattest tetrahedra have dihedral angles of %.2f to %.2f degrees", v.dihedral_min_deg, v.dihedral_max_deg);
-  warnings.push_back({WarningCode::flat_elements, "", std::string(text) + ": a solver may fail on them; the report's defects say where (--report R.html), another --edge-length may avoid them"});
+  std::snprintf(text, sizeof text, "the flattest tetrahedra have dihedral angles of %.2f to %.2f degrees",
+                v.dihedral_min_deg, v.dihedral_max_deg);
+  warnings.push_back({WarningCode::flat_elements, "",
+                      std::string(text) + ": a solver may fail on them; the report's defects say where (--report "
+                                          "R.html), another --edge-length may avoid them"});
 }
 
 /// From sections to the checked mesh.
@@ -98,7 +106,8 @@ void finish(SectionStage sections, LabelMesh& out, const Call& call) {
   out.frame = stitched.frame;
   out.sections = std::move(stitched.stack);
   SurfaceStage surface = surface_stage(std::move(stitched), call);
-  if (o.target == Target::volume && surface.judged.is_sound() && !surface.filled) call.clock.run("volume", [&] { fill_stage(surface, call); });
+  if (o.target == Target::volume && surface.judged.is_sound() && !surface.filled)
+    call.clock.run("volume", [&] { fill_stage(surface, call); });
   TetStage tets;
   if (surface.filled) tets = call.clock.run("volume", [&] { return tet_stage(surface, out.frame, call); });
   out.stitched.open_edges = surface.stitched_check.open_edges;
@@ -138,7 +147,8 @@ LabelMesh mesh_volume(const LabelVolume& given, const MeshOptions& options, Moni
     out.input_volume_mm3 = volumes_of(changed ? *changed : given);
     if (options.sections.band_px > 0 && !options.sections.as_stored)
       if (std::optional<TrueGrid> grid = find_true_grid(changed ? *changed : given, options.threads)) {
-        out.warnings.push_back({WarningCode::coarser_grid, "", true_grid_warning((changed ? *changed : given).spacing_mm, grid->volume.spacing_mm)});
+        out.warnings.push_back({WarningCode::coarser_grid, "",
+                                true_grid_warning((changed ? *changed : given).spacing_mm, grid->volume.spacing_mm)});
         changed = std::move(grid->volume);
       }
     const LabelVolume& volume = changed ? *changed : given;
@@ -175,7 +185,8 @@ LabelMesh mesh_sections(Stack stack, const MeshOptions& options, Monitor& monito
   return out;
 }
 
-LabelMesh mesh_contours(const std::vector<LabelContours>& contours, const MeshOptions& options, const ContourStackOptions& drawn, Monitor& monitor) {
+LabelMesh mesh_contours(const std::vector<LabelContours>& contours, const MeshOptions& options,
+                        const ContourStackOptions& drawn, Monitor& monitor) {
   ContourStackOptions how = drawn;
   how.caps = options.stitch.caps;
   how.label_caps = options.stitch.label_caps;

@@ -26,16 +26,16 @@ struct Call {
 /// Sections, and what is known of the labels that they were made of.
 struct SectionStage {
   Stack stack;
-  bool drawn = false;                    ///< contours as they were drawn; false: of a label volume
-  InterfaceComplex faired;               ///< the faired interfaces as a whole; empty without fairing
-  std::map<Label, double> volume_mm3;    ///< of each label's voxels
-  std::string far_apart;                 ///< why the surface is not worth enhancing; "": it is
+  bool drawn = false;                  ///< contours as they were drawn; false: of a label volume
+  InterfaceComplex faired;             ///< the faired interfaces as a whole; empty without fairing
+  std::map<Label, double> volume_mm3;  ///< of each label's voxels
+  std::string far_apart;               ///< why the surface is not worth enhancing; "": it is
 };
 
 /// A stitched surface, in stack coordinates, and the measures that enhancement needs.
 struct StitchedStage {
   InterfaceComplex complex;
-  Stack stack;                           ///< the sections as they were stitched, where someone wants them
+  Stack stack;  ///< the sections as they were stitched, where someone wants them
   Frame frame;
   double pixel_mm = 1, gap_mm = 1;
   double drawn_gap_mm = 0, drawn_bulge_mm = 0;  ///< of drawn contours
@@ -46,13 +46,13 @@ struct StitchedStage {
 
 /// The surface that is handed out, and the tetrahedra that were filled beside its last check.
 struct SurfaceStage {
-  InterfaceComplex complex;              ///< stack coordinates
+  InterfaceComplex complex;  ///< stack coordinates
   SurfaceLevel level = SurfaceLevel::stitched;
   Judgement judged;
   SurfaceCheck stitched_check;
   std::optional<FillResult> filled;
-  Hollowed hollowed;                     ///< what was filled, where there are voids
-  std::optional<LayerPlan> layers;       ///< of `filled`
+  Hollowed hollowed;                ///< what was filled, where there are voids
+  std::optional<LayerPlan> layers;  ///< of `filled`
   std::string lost_detail;
 };
 
@@ -61,12 +61,13 @@ struct TetStage {
   std::optional<TetMesh> mesh;
   Closure closure = Closure::skipped;
   std::optional<Refusal> refusal;
-  std::vector<LayerFigures> layers;      ///< places in the coordinates of the mesh
+  std::vector<LayerFigures> layers;  ///< places in the coordinates of the mesh
 };
 
 StitchedStage stitch_stage(SectionStage sections, LabelMesh& out, const Call& call);
 
-/// The stitched surface, enhanced where that is wanted; it is kept until the enhanced one has passed the same exact checks.
+/// The stitched surface, enhanced where that is wanted; it is kept until the enhanced one has passed the same exact
+/// checks.
 SurfaceStage surface_stage(StitchedStage stitched, const Call& call);
 
 /// The volume mesher works in stack coordinates; only what it gives is mapped to the world.

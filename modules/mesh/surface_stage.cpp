@@ -12,11 +12,13 @@
 namespace stackmesh {
 namespace {
 
-/// An edge length that is far too small is told before the surface is remeshed, which would take as long as it is small.
+/// An edge length that is far too small is told before the surface is remeshed, which would take as long as it is
+/// small.
 void refuse_too_fine(const InterfaceComplex& surface, const MeshOptions& o) {
   if (o.target != Target::volume || !o.enhancement.edge_length_mm) return;
   const double edge = *o.enhancement.edge_length_mm, inner = 2 * edge;
-  double area = 0, volume = 0;  // of both sides; stitched steps have up to half as much again as the surface that comes of them
+  // of both sides; stitched steps have up to half as much again as the surface that comes of them
+  double area = 0, volume = 0;
   for (const InterfaceTriangle& t : surface.triangles) {
     const Vec3 &a = surface.points[t.v[0]], &b = surface.points[t.v[1]], &c = surface.points[t.v[2]];
     area += ((t.below != 0) + (t.above != 0)) * 0.5 * norm(cross(b - a, c - a)) / 1.5;
@@ -29,13 +31,16 @@ void refuse_too_fine(const InterfaceComplex& surface, const MeshOptions& o) {
 bool is_too_large(const StitchedStage& stitched, const Call& call) {
   const MeshOptions& o = call.options;
   if (!stitched.far_apart.empty() && o.enhance_up_to) {
-    call.warnings.push_back({WarningCode::not_enhanced, "", stitched.far_apart + ": the surface is kept as stitched; look at spacing and heights"});
+    call.warnings.push_back({WarningCode::not_enhanced, "",
+                             stitched.far_apart + ": the surface is kept as stitched; look at spacing and heights"});
     return true;
   }
   if (!o.enhance_up_to || stitched.complex.triangles.size() <= *o.enhance_up_to) return false;
-  call.warnings.push_back({WarningCode::not_enhanced, "", "the stitched surface has " + std::to_string(stitched.complex.triangles.size()) +
-                          " triangles, more than are enhanced by default (it would take minutes): it is kept as stitched; ask for enhancement with --edge-length "
-                          "or --deviation, or reduce it with --interpolate or --simplify"});
+  call.warnings.push_back({WarningCode::not_enhanced, "",
+                           "the stitched surface has " + std::to_string(stitched.complex.triangles.size()) +
+                               " triangles, more than are enhanced by default (it would take minutes): it is kept as "
+                               "stitched; ask for enhancement with --edge-length "
+                               "or --deviation, or reduce it with --interpolate or --simplify"});
   return true;
 }
 
@@ -63,19 +68,25 @@ void warn_of_changes(const SurfaceCheck& before, const SurfaceCheck& after, std:
   for (const LabelSurface& b : before.labels)
     for (const LabelSurface& a : after.labels)
       if (a.label == b.label && (a.euler != b.euler || a.components != b.components))
-        warnings.push_back(warning_at(WarningCode::topology_changed, "label " + std::to_string(a.label), "enhancement changed its Euler number from " + std::to_string(b.euler) + " to " + std::to_string(a.euler) +
-                           " and its pieces from " + std::to_string(b.components) + " to " + std::to_string(a.components)));
+        warnings.push_back(warning_at(WarningCode::topology_changed, "label " + std::to_string(a.label),
+                                      "enhancement changed its Euler number from " + std::to_string(b.euler) + " to " +
+                                          std::to_string(a.euler) + " and its pieces from " +
+                                          std::to_string(b.components) + " to " + std::to_string(a.components)));
 }
 
 /// A surface is checked beside the stage that goes on with it, whose result counts only after the check.
 class CheckBeside {
  public:
   CheckBeside(const Call& call, const Frame& frame) : call_(call), frame_(frame) {}
-  void begin(const InterfaceComplex& surface, bool at_once, int threads, std::function<void(const Judgement&)> then = {}) {
-    call_.clock.begin_beside("validate", [this, &surface, threads, then = std::move(then)] {
-      judged_ = judge(surface, frame_, threads);
-      if (then) then(judged_);
-    }, at_once);
+  void begin(const InterfaceComplex& surface, bool at_once, int threads,
+             std::function<void(const Judgement&)> then = {}) {
+    call_.clock.begin_beside(
+        "validate",
+        [this, &surface, threads, then = std::move(then)] {
+          judged_ = judge(surface, frame_, threads);
+          if (then) then(judged_);
+        },
+        at_once);
   }
   Judgement finish() {
     call_.clock.run("validate", [&] { call_.clock.finish_beside(); });
@@ -121,12 +132,16 @@ SurfaceStage enhance(StitchedStage stitched, const Call& call) {
   out.level = result.level;
 
   std::atomic<bool> unsound{false};
-  beside.begin(out.complex, fills && two, fills ? 1 : o.threads, [&](const Judgement& j) { unsound = !accepts(j, out.stitched_check); });
+  beside.begin(out.complex, fills && two, fills ? 1 : o.threads,
+               [&](const Judgement& j) { unsound = !accepts(j, out.stitched_check); });
   if (fills) call.clock.run("volume", [&] { error = error_of([&] { fill_stage(out, call, &unsound); }); });
   Judgement enhanced = beside.finish();
   if (!accepts(enhanced, out.stitched_check)) {
-    call.warnings.push_back({WarningCode::not_enhanced, "", "the enhanced surface did not pass the exact checks (" + std::to_string(enhanced.check.open_edges) + " open edges, " +
-                            std::to_string(enhanced.check.self_intersections) + " self-intersections): the stitched surface is used"});
+    call.warnings.push_back({WarningCode::not_enhanced, "",
+                             "the enhanced surface did not pass the exact checks (" +
+                                 std::to_string(enhanced.check.open_edges) + " open edges, " +
+                                 std::to_string(enhanced.check.self_intersections) +
+                                 " self-intersections): the stitched surface is used"});
     out.complex = std::move(stitched.complex);
     out.level = SurfaceLevel::stitched;
     out.filled.reset();
@@ -135,7 +150,8 @@ SurfaceStage enhance(StitchedStage stitched, const Call& call) {
     if (error) std::rethrow_exception(error);
     out.judged = std::move(enhanced);
   }
-  if (out.level != SurfaceLevel::enhanced) out.lost_detail = std::string("the surface is ") + to_text(out.level) + ", not enhanced";
+  if (out.level != SurfaceLevel::enhanced)
+    out.lost_detail = std::string("the surface is ") + to_text(out.level) + ", not enhanced";
   warn_of_changes(out.stitched_check, out.judged.check, call.warnings);
   return out;
 }

@@ -29,14 +29,17 @@ FillOptions fill_options(const MeshOptions& o, SurfaceLevel level) {
 }
 
 /// The surface has its points where the tets have them, and is checked again.
-void follow_moved(SurfaceStage& surface, const TetMesh& mesh, const std::vector<std::int32_t>& moved, const Frame& frame, int threads) {
+void follow_moved(SurfaceStage& surface, const TetMesh& mesh, const std::vector<std::int32_t>& moved,
+                  const Frame& frame, int threads) {
   if (moved.empty()) return;
   std::map<std::array<double, 3>, Vec3> to;  // points of the surface at one place are one for the tets
-  for (const std::int32_t v : moved) to[{surface.complex.points[v].x, surface.complex.points[v].y, surface.complex.points[v].z}] = mesh.points[v];
+  for (const std::int32_t v : moved)
+    to[{surface.complex.points[v].x, surface.complex.points[v].y, surface.complex.points[v].z}] = mesh.points[v];
   for (Vec3& p : surface.complex.points)
     if (const auto at = to.find({p.x, p.y, p.z}); at != to.end()) p = at->second;
   surface.judged = judge(surface.complex, frame, threads);
-  if (!surface.judged.is_sound()) fail_internal("the surface was sound until its worst tetrahedra were improved", "volume");
+  if (!surface.judged.is_sound())
+    fail_internal("the surface was sound until its worst tetrahedra were improved", "volume");
 }
 
 /// Puts the layers over the filled core.
@@ -44,7 +47,8 @@ void take_layers(TetStage& out, LayerPlan& plan, const Frame& frame, std::vector
   add_layers(*out.mesh, plan);
   for (LayerFigures& f : plan.figures) {
     for (LayerPlace& p : f.places) p.at_mm = frame.to_world(p.at_mm);
-    if (const std::string text = layer_warning(f); !text.empty()) warnings.push_back({WarningCode::layers, "label " + std::to_string(f.label), text});
+    if (const std::string text = layer_warning(f); !text.empty())
+      warnings.push_back({WarningCode::layers, "label " + std::to_string(f.label), text});
     out.layers.push_back(std::move(f));
   }
 }
@@ -57,7 +61,8 @@ void refine(TetStage& out, SurfaceStage& surface, const Frame& frame, const Mesh
   surface.judged = judge(surface_of(*out.mesh), frame, o.threads);
   for (const LabelSurface& l : before)  // voids are not refined
     if (o.voids.count(l.label) > 0) surface.judged.check.labels.push_back(l);
-  if (!surface.judged.is_sound()) out.refusal = Refusal{"", "leave --refine out, or use --order 1: curved sides cut into flat ones touch here", {}};
+  if (!surface.judged.is_sound())
+    out.refusal = Refusal{"", "leave --refine out, or use --order 1: curved sides cut into flat ones touch here", {}};
 }
 
 }  // namespace
@@ -87,11 +92,15 @@ TetStage tet_stage(SurfaceStage& surface, const Frame& frame, const Call& call) 
   FillResult result = std::move(*surface.filled);
   surface.filled.reset();
   for (const Warning& w : result.warnings) call.warnings.push_back(w);
-  if (!result.fallback.empty()) call.warnings.push_back({WarningCode::mesher, "", "the volume mesher fell back: " + result.fallback + "; then " + result.message});
+  if (!result.fallback.empty())
+    call.warnings.push_back(
+        {WarningCode::mesher, "", "the volume mesher fell back: " + result.fallback + "; then " + result.message});
   if (result.status != FillResult::Status::verified) {
     out.closure = Closure::failed;
-    Refusal no{"the volume mesher did not fill the surface (" + result.message + ")", "", std::move(result.offending_triangles)};
-    if (result.status == FillResult::Status::timed_out) no.mend = "give it longer with --timeout, or mesh fewer labels at once";
+    Refusal no{"the volume mesher did not fill the surface (" + result.message + ")", "",
+               std::move(result.offending_triangles)};
+    if (result.status == FillResult::Status::timed_out)
+      no.mend = "give it longer with --timeout, or mesh fewer labels at once";
     if (result.status == FillResult::Status::crashed) no.mend = "free some memory, or mesh fewer labels at once";
     out.refusal = std::move(no);
     return out;

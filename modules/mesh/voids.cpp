@@ -23,10 +23,12 @@ Hollowed hollowed(const InterfaceComplex& complex, const std::set<Label>& voids)
 
 void name_voids(std::vector<InterfaceTriangle>& triangles, const std::vector<Label>& behind) {
   if (behind.empty()) return;
-  if (triangles.size() % behind.size() != 0) fail_internal("the mesh does not have the triangles that it was filled from", "voids");
+  if (triangles.size() % behind.size() != 0)
+    fail_internal("the mesh does not have the triangles that it was filled from", "voids");
   const std::size_t parts = triangles.size() / behind.size();
   for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (const Label l = behind[i / parts]; l != 0) (triangles[i].below == 0 ? triangles[i].below : triangles[i].above) = l;
+    if (const Label l = behind[i / parts]; l != 0)
+      (triangles[i].below == 0 ? triangles[i].below : triangles[i].above) = l;
 }
 
 }  // namespace stackmesh

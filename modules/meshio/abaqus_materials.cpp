@@ -1,6 +1,6 @@
-#include "meshio/abaqus_cards.h"
-
 #include <cmath>
+
+#include "meshio/abaqus_cards.h"
 
 namespace stackmesh {
 namespace {
@@ -43,17 +43,23 @@ void material(OutputBuffer& out, const ElementMaterial& m) {
       numbers(out, {c[0], c[1], 2 / c[2]});
       break;
     case MaterialKind::holzapfel:
-      out << "** CalculiX does not read this material; Abaqus does\n*ANISOTROPIC HYPERELASTIC, HOLZAPFEL, LOCAL DIRECTIONS=2\n";
+      out << "** CalculiX does not read this material; Abaqus does\n*ANISOTROPIC HYPERELASTIC, HOLZAPFEL, LOCAL "
+             "DIRECTIONS=2\n";
       numbers(out, {c[0], 2 / c[5], c[1], c[2], c[3]});
       break;
-    case MaterialKind::linear: break;
+    case MaterialKind::linear:
+      break;
   }
   density(out, m.density_t_mm3);
 }
 
-bool same(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) { return norm(a[0] - b[0]) == 0 && norm(a[1] - b[1]) == 0; }
+bool same(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
+  return norm(a[0] - b[0]) == 0 && norm(a[1] - b[1]) == 0;
+}
 
-void axes(OutputBuffer& out, const std::array<Vec3, 2>& a) { numbers(out, {a[0].x, a[0].y, a[0].z, a[1].x, a[1].y, a[1].z}); }
+void axes(OutputBuffer& out, const std::array<Vec3, 2>& a) {
+  numbers(out, {a[0].x, a[0].y, a[0].z, a[1].x, a[1].y, a[1].z});
+}
 
 /// The axes of a material's elements: one orientation, or one an element. Returns what the section says of it.
 std::string orientation(OutputBuffer& out, const PreparedMesh& mesh, const ElementMaterial& m) {
@@ -63,14 +69,16 @@ std::string orientation(OutputBuffer& out, const PreparedMesh& mesh, const Eleme
   for (const std::int32_t t : m.tets) one = one && same(all[t], all[m.tets[0]]);
   const std::string name = "OR_" + m.name;
   if (!one) {
-    out << "*DISTRIBUTION TABLE, NAME=T" << name << "\nCOORD3D, COORD3D\n*DISTRIBUTION, NAME=D" << name << ", LOCATION=ELEMENT, TABLE=T" << name << "\n, ";
+    out << "*DISTRIBUTION TABLE, NAME=T" << name << "\nCOORD3D, COORD3D\n*DISTRIBUTION, NAME=D" << name
+        << ", LOCATION=ELEMENT, TABLE=T" << name << "\n, ";
     axes(out, all[m.tets[0]]);
     for (const std::int32_t t : m.tets) {
       out << t + 1 << ", ";
       axes(out, all[t]);
     }
   }
-  out << "*ORIENTATION, NAME=" << name << ", SYSTEM=RECTANGULAR" << (m.kind == MaterialKind::holzapfel ? ", LOCAL DIRECTIONS=2" : "") << '\n';
+  out << "*ORIENTATION, NAME=" << name << ", SYSTEM=RECTANGULAR"
+      << (m.kind == MaterialKind::holzapfel ? ", LOCAL DIRECTIONS=2" : "") << '\n';
   if (one) axes(out, all[m.tets[0]]);
   else out << 'D' << name << '\n';
   if (m.kind == MaterialKind::holzapfel) {
@@ -88,7 +96,8 @@ void abaqus_list(OutputBuffer& out, const std::vector<std::int32_t>& from_zero) 
     out << from_zero[i] + 1 << (i + 1 == from_zero.size() ? "\n" : i % 16 == 15 ? ",\n" : ", ");
 }
 
-void abaqus_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::vector<std::string>& label_sets, UniqueNames& element_sets) {
+void abaqus_materials(OutputBuffer& out, const PreparedMesh& mesh, const std::vector<std::string>& label_sets,
+                      UniqueNames& element_sets) {
   const SolverSets& sets = mesh.sets;
   if (sets.placeholder_materials) return;  // this format can be read without
   for (const ElementMaterial& m : sets.materials) {

@@ -39,7 +39,9 @@ class Steps {
   }
 
  private:
-  std::size_t point_number(std::int32_t point) const { return mesh_.points.size() + 1 + static_cast<std::size_t>(point); }
+  std::size_t point_number(std::int32_t point) const {
+    return mesh_.points.size() + 1 + static_cast<std::size_t>(point);
+  }
 
   void step(const LoadStep& s, bool later) {
     if (sets_.steps.size() > 1) out_ << "** " << s.name << '\n';
@@ -49,7 +51,9 @@ class Steps {
       const bool nonlinear = s.large_displacements || sets_.is_hyperelastic();
       const int increments = s.increments > 0 ? s.increments : nonlinear || sets_.has_contact() ? 10 : 1;
       if (nonlinear) out_ << "*STEP, NLGEOM, INC=1000\n*STATIC\n";
-      else out_ << (increments > 100 ? "*STEP, INC=" + std::to_string(10 * increments) : std::string("*STEP")) << "\n*STATIC\n";
+      else
+        out_ << (increments > 100 ? "*STEP, INC=" + std::to_string(10 * increments) : std::string("*STEP"))
+             << "\n*STATIC\n";
       if (increments > 1) {
         out_.print20(1.0 / increments);
         out_ << ", 1., 1e-05, 1.\n";
@@ -59,7 +63,8 @@ class Steps {
     if (s.analysis == Analysis::statics) loads(s, later);
     if (s.analysis == Analysis::statics)
       for (const RigidPoint& p : sets_.points) out_ << "*NODE PRINT, NSET=" << p.name << ", FREQUENCY=1000\nU, RF\n";
-    out_ << "*NODE FILE\n" << (s.analysis == Analysis::frequency ? "U\n*END STEP\n" : "U, RF\n*EL FILE\nS, E\n*END STEP\n");
+    out_ << "*NODE FILE\n"
+         << (s.analysis == Analysis::frequency ? "U\n*END STEP\n" : "U, RF\n*EL FILE\nS, E\n*END STEP\n");
   }
 
   void boundary(const LoadStep& s, bool later) {
@@ -178,9 +183,11 @@ void abaqus_points_and_springs(OutputBuffer& out, const PreparedMesh& mesh, std:
     out << '\n';
   };
   for (const RigidPoint& p : sets.points) {
-    out << "** a point to which set " << p.set << " is bound as a rigid body\n*NODE, NSET=" << p.name << '\n' << ++node << ", ";
+    out << "** a point to which set " << p.set << " is bound as a rigid body\n*NODE, NSET=" << p.name << '\n'
+        << ++node << ", ";
     place(p.at_mm);
-    out << "*COUPLING, REF NODE=" << node << ", SURFACE=" << p.set << ", CONSTRAINT NAME=C_" << p.name << "\n*KINEMATIC\n1, 3\n";
+    out << "*COUPLING, REF NODE=" << node << ", SURFACE=" << p.set << ", CONSTRAINT NAME=C_" << p.name
+        << "\n*KINEMATIC\n1, 3\n";
   }
   // Springs of one stiffness along one axis share a set; those along other directions reach to a ground far away.
   const double distance = sets.springs.empty() ? 0 : far_away(mesh);
@@ -216,6 +223,8 @@ void abaqus_points_and_springs(OutputBuffer& out, const PreparedMesh& mesh, std:
   }
 }
 
-void abaqus_steps(OutputBuffer& out, const PreparedMesh& mesh) { Steps(out, mesh).write(); }
+void abaqus_steps(OutputBuffer& out, const PreparedMesh& mesh) {
+  Steps(out, mesh).write();
+}
 
 }  // namespace stackmesh

@@ -15,7 +15,8 @@ namespace {
 
 /// Faces of kTetFaces as SOLID187 numbers them, and as SOLID185 does whose nodes are I J K K M M M M.
 constexpr int kFaceOfTen[4] = {1, 2, 3, 4}, kFaceOfFour[4] = {1, 2, 3, 5};
-/// Wedges and pyramids are bricks with corners that coincide (SOLID185, SOLID186): I J K K M N O O, and I J K L M M M M whose base is 0 3 4 1.
+/// Wedges and pyramids are bricks with corners that coincide (SOLID185, SOLID186): I J K K M N O O, and I J K L M M M M
+/// whose base is 0 3 4 1.
 constexpr int kFaceOfWedge[2] = {1, 6}, kFaceOfPyramid[2] = {5, 3};
 
 /// ANSYS's blocked archive, for CDREAD or /INPUT: nodes and elements in blocks of fixed fields, the rest as commands.
@@ -23,7 +24,8 @@ class AnsysFile : FixedFields {
  public:
   AnsysFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
     if (mesh.points.size() > 999999999 || mesh.elements() > 999999999)
-      fail_output("the fields of .cdb hold at most 9 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
+      fail_output("the fields of .cdb hold at most 9 digits", std::to_string(mesh.points.size()) + " nodes",
+                  "write another format");
   }
 
   void write() {
@@ -80,8 +82,10 @@ class AnsysFile : FixedFields {
         }
       }
       // material, type, constants, section, coordinate system, birth, solid, shape, number of nodes, unused, number
-      for (const std::int64_t f : {number(material[t]), std::int64_t{wedge && mesh_.second_order() ? 2 : 1}, std::int64_t{1}, std::int64_t{1}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0},
-                                   static_cast<std::int64_t>(nodes.size()), std::int64_t{0}, number(t)})
+      for (const std::int64_t f :
+           {number(material[t]), std::int64_t{wedge && mesh_.second_order() ? 2 : 1}, std::int64_t{1}, std::int64_t{1},
+            std::int64_t{0}, std::int64_t{0}, std::int64_t{0}, std::int64_t{0}, static_cast<std::int64_t>(nodes.size()),
+            std::int64_t{0}, number(t)})
         whole(f, 9);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         if (k == 8) out_ << '\n';
@@ -97,12 +101,14 @@ class AnsysFile : FixedFields {
   std::vector<std::int32_t> brick(std::size_t wedge) const {
     const auto& w = mesh_.wedges[wedge];
     const bool pyramid = is_pyramid(w);
-    std::vector<std::int32_t> nodes = pyramid ? std::vector<std::int32_t>{w[0], w[3], w[4], w[1], w[2], w[2], w[2], w[2]}
-                                              : std::vector<std::int32_t>{w[0], w[1], w[2], w[2], w[3], w[4], w[5], w[5]};
+    std::vector<std::int32_t> nodes = pyramid
+                                          ? std::vector<std::int32_t>{w[0], w[3], w[4], w[1], w[2], w[2], w[2], w[2]}
+                                          : std::vector<std::int32_t>{w[0], w[1], w[2], w[2], w[3], w[4], w[5], w[5]};
     if (!mesh_.second_order()) return nodes;
     const auto& m = mesh_.wedge_mids[wedge];  // Q R S T, U V W X, Y Z A B
-    for (const std::int32_t v : pyramid ? std::array<std::int32_t, 12>{m[6], m[3], m[7], m[0], w[2], w[2], w[2], w[2], m[2], m[5], m[4], m[1]}
-                                        : std::array<std::int32_t, 12>{m[0], m[1], w[2], m[2], m[3], m[4], w[5], m[5], m[6], m[7], m[8], m[8]})
+    for (const std::int32_t v :
+         pyramid ? std::array<std::int32_t, 12>{m[6], m[3], m[7], m[0], w[2], w[2], w[2], w[2], m[2], m[5], m[4], m[1]}
+                 : std::array<std::int32_t, 12>{m[0], m[1], w[2], m[2], m[3], m[4], w[5], m[5], m[6], m[7], m[8], m[8]})
       nodes.push_back(v);
     return nodes;
   }
@@ -125,7 +131,8 @@ class AnsysFile : FixedFields {
     out_ << '\n';
   }
 
-  /// Elements of labels, and of materials where a label has several; nodes of sets. Commands apply to the faces all of whose nodes are in a component.
+  /// Elements of labels, and of materials where a label has several; nodes of sets. Commands apply to the faces all of
+  /// whose nodes are in a component.
   void components() {
     UniqueNames names(32);
     for (const LabelGroup& g : mesh_.labels) {
@@ -141,7 +148,8 @@ class AnsysFile : FixedFields {
   }
 
   void materials() {
-    if (sets_.placeholder_materials) out_ << "/COM, no material law was given: EX = 1 MPa and PRXY = 0.3 hold the place\n";
+    if (sets_.placeholder_materials)
+      out_ << "/COM, no material law was given: EX = 1 MPa and PRXY = 0.3 hold the place\n";
     for (std::size_t i = 0; i < sets_.materials.size(); ++i) {
       const ElementMaterial& m = sets_.materials[i];
       out_ << "/COM, material " << i + 1 << ": " << m.name << '\n';
@@ -165,9 +173,12 @@ class AnsysFile : FixedFields {
           if (n.axes[axis]) sets[{n.followed, axis}].push_back(n.node);
     std::size_t set = 0;
     for (const auto& [key, nodes] : sets) {
-      out_ << "CP," << ++set << ",U" << "XYZ"[key.second] << ',' << key.first + 1;
+      out_ << "CP," << ++set << ",U"
+           << "XYZ"[key.second] << ',' << key.first + 1;
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (i > 0 && i % 16 == 0) out_ << "\nCP," << set << ",U" << "XYZ"[key.second];  // 17 nodes a command
+        if (i > 0 && i % 16 == 0)
+          out_ << "\nCP," << set << ",U"
+               << "XYZ"[key.second];  // 17 nodes a command
         out_ << ',' << nodes[i] + 1;
       }
       out_ << '\n';
@@ -182,7 +193,8 @@ class AnsysFile : FixedFields {
       for (const std::int32_t v : nodes_of(sets_, s.set))
         for (int axis = 0; axis < 3; ++axis)
           if (s.value_mm[axis]) {
-            out_ << "D," << v + 1 << ",U" << "XYZ"[axis] << ',';
+            out_ << "D," << v + 1 << ",U"
+                 << "XYZ"[axis] << ',';
             out_.print20(*s.value_mm[axis]);
             out_ << '\n';
           }
@@ -190,7 +202,8 @@ class AnsysFile : FixedFields {
       const double f[3] = {force.x, force.y, force.z};
       for (int axis = 0; axis < 3; ++axis)
         if (f[axis] != 0) {
-          out_ << "F," << node + 1 << ",F" << "XYZ"[axis] << ',';
+          out_ << "F," << node + 1 << ",F"
+               << "XYZ"[axis] << ',';
           out_.print20(f[axis]);
           out_ << '\n';
         }

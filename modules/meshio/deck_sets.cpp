@@ -28,7 +28,8 @@ std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides) {
         std::array<std::int32_t, 3> face;
         bool candidate = true;
         for (int k = 0; k < 3; ++k) {
-          face[k] = t < mesh.tets.size() ? mesh.tets[t][kTetFaces[f][k]] : mesh.wedges[t - mesh.tets.size()][kWedgeFaces[f][k]];
+          face[k] = t < mesh.tets.size() ? mesh.tets[t][kTetFaces[f][k]]
+                                         : mesh.wedges[t - mesh.tets.size()][kWedgeFaces[f][k]];
           candidate = candidate && on_triangle[face[k]];
         }
         if (!candidate) continue;
@@ -47,12 +48,12 @@ std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides) {
   for (const LabelGroup& group : mesh.labels) filled.insert(group.label);
   for (std::size_t i = 0; i < owners.size(); ++i) {
     const InterfaceTriangle& t = mesh.triangles[i];
-    const bool below = filled.count(t.below) == 0 || has_below[i] != 0, above = filled.count(t.above) == 0 || has_above[i] != 0;
+    const bool below = filled.count(t.below) == 0 || has_below[i] != 0,
+               above = filled.count(t.above) == 0 || has_above[i] != 0;
     if (owners[i].tet < 0 || (both_sides && !(below && above)))
       fail_internal("an interface triangle is not a face of a tet of each of its labels",
-                    "triangle " + std::to_string(i) + " between labels " +
-                        std::to_string(mesh.triangles[i].below) + " and " +
-                        std::to_string(mesh.triangles[i].above));
+                    "triangle " + std::to_string(i) + " between labels " + std::to_string(mesh.triangles[i].below) +
+                        " and " + std::to_string(mesh.triangles[i].above));
   }
   return owners;
 }
@@ -69,7 +70,8 @@ void add_interface_sets(PreparedMesh& mesh) {
     faces.name = surfaces.add("S_" + deck_name(g.name));
     for (std::size_t t = g.begin; t < g.end; ++t) {
       nodes.nodes.insert(nodes.nodes.end(), mesh.triangles[t].v.begin(), mesh.triangles[t].v.end());
-      if (mesh.second_order()) nodes.nodes.insert(nodes.nodes.end(), mesh.triangle_mids[t].begin(), mesh.triangle_mids[t].end());
+      if (mesh.second_order())
+        nodes.nodes.insert(nodes.nodes.end(), mesh.triangle_mids[t].begin(), mesh.triangle_mids[t].end());
       faces.faces.push_back(owners[t]);
     }
     std::sort(nodes.nodes.begin(), nodes.nodes.end());
@@ -103,7 +105,8 @@ std::vector<std::int32_t> material_of_tets(const PreparedMesh& mesh) {
 }
 
 const LoadStep* first_static_step(const SolverSets& sets) {
-  const auto found = std::find_if(sets.steps.begin(), sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
+  const auto found = std::find_if(sets.steps.begin(), sets.steps.end(),
+                                  [](const LoadStep& s) { return s.analysis == Analysis::statics; });
   return found == sets.steps.end() ? nullptr : &*found;
 }
 

@@ -28,7 +28,7 @@ std::vector<InterfaceTriangle> faces_of_tets(const TetMesh& mesh) {
     std::int32_t middle, high, tet;
     bool even;
   };
-  static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};  // outwards
+  static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};    // outwards
   static constexpr int kOfWedge[4][3] = {{0, 2, 1}, {3, 4, 5}, {1, 2, 4}, {2, 0, 3}};  // the last two of a pyramid
   const auto each = [&](auto visit) {
     const auto side = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::size_t element) {
@@ -44,7 +44,8 @@ std::vector<InterfaceTriangle> faces_of_tets(const TetMesh& mesh) {
       for (const auto& f : kFaces) side(mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]], t);
     for (std::size_t w = 0; w < mesh.wedges.size(); ++w)
       for (int f = 0; f < (is_pyramid(mesh.wedges[w]) ? 4 : 2); ++f)
-        side(mesh.wedges[w][kOfWedge[f][0]], mesh.wedges[w][kOfWedge[f][1]], mesh.wedges[w][kOfWedge[f][2]], mesh.tets.size() + w);
+        side(mesh.wedges[w][kOfWedge[f][0]], mesh.wedges[w][kOfWedge[f][1]], mesh.wedges[w][kOfWedge[f][2]],
+             mesh.tets.size() + w);
   };
   std::vector<std::int64_t> start(mesh.points.size() + 1, 0);
   each([&](std::int32_t low, const Face&) { ++start[low + 1]; });
@@ -75,7 +76,8 @@ std::vector<InterfaceTriangle> faces_of_tets(const TetMesh& mesh) {
   groups([&](std::int32_t, const Face* f, int n) {
     if (n != 2) return;
     const signed char step = f[0].even == f[1].even ? 1 : -1;
-    against[f[0].tet] = static_cast<signed char>(against[f[0].tet] + step), against[f[1].tet] = static_cast<signed char>(against[f[1].tet] + step);
+    against[f[0].tet] = static_cast<signed char>(against[f[0].tet] + step),
+    against[f[1].tet] = static_cast<signed char>(against[f[1].tet] + step);
   });
   std::vector<InterfaceTriangle> result;
   groups([&](std::int32_t low, const Face* f, int n) {

@@ -10,7 +10,8 @@
 namespace stackmesh {
 namespace {
 
-/// FEBio 4 (febio_spec 4.0). Names are references, so every one is written by the function that also writes what it names.
+/// FEBio 4 (febio_spec 4.0). Names are references, so every one is written by the function that also writes what it
+/// names.
 class FebioFile {
  public:
   FebioFile(std::FILE* file, const PreparedMesh& mesh) : out_(file), mesh_(mesh), sets_(mesh.sets) {
@@ -22,7 +23,10 @@ class FebioFile {
     }
     for (const LabelGroup& g : mesh.labels)
       for (const bool pyramids : {false, true}) {
-        Part part{deck_name(g.name) + (pyramids ? "_pyramids" : "_wedges"), g.label, pyramids ? (mesh.second_order() ? "pyra13" : "pyra5") : (mesh.second_order() ? "penta15" : "penta6"), {}};
+        Part part{deck_name(g.name) + (pyramids ? "_pyramids" : "_wedges"),
+                  g.label,
+                  pyramids ? (mesh.second_order() ? "pyra13" : "pyra5") : (mesh.second_order() ? "penta15" : "penta6"),
+                  {}};
         for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w)
           if (is_pyramid(mesh.wedges[w]) == pyramids) part.elements.push_back(mesh.tets.size() + w);
         if (part.elements.empty()) continue;
@@ -32,7 +36,8 @@ class FebioFile {
   }
 
   void write() {
-    out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n<!-- stackmesh; units: mm, N, MPa, t/mm3";
+    out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n<!-- stackmesh; units: mm, N, "
+            "MPa, t/mm3";
     if (!mesh_.space.empty()) out_ << "; " << mesh_.space_mark();
     out_ << " -->\n<Module type=\"solid\">\n<units>mm-N-s</units>\n</Module>\n";
     FebioSteps steps(out_, mesh_);
@@ -46,7 +51,8 @@ class FebioFile {
     steps.springs();
     steps.further();
     steps.load_curves();
-    out_ << "<Output>\n<plotfile type=\"febio\">\n<var type=\"displacement\"/>\n<var type=\"stress\"/>\n</plotfile>\n</Output>\n"
+    out_ << "<Output>\n<plotfile type=\"febio\">\n<var type=\"displacement\"/>\n<var "
+            "type=\"stress\"/>\n</plotfile>\n</Output>\n"
             "</febio_spec>\n";
   }
 
@@ -82,7 +88,8 @@ class FebioFile {
 
   void materials() {
     out_ << "<Material>\n";
-    if (sets_.placeholder_materials) out_ << "<!-- no material law was given: E = 1 MPa and v = 0.3 hold the place -->\n";
+    if (sets_.placeholder_materials)
+      out_ << "<!-- no material law was given: E = 1 MPa and v = 0.3 hold the place -->\n";
     int id = 0;
     for (std::size_t g = 0; g < parts_.size(); ++g) {
       const ElementMaterial& m = material_of(parts_[g].label);
@@ -96,8 +103,9 @@ class FebioFile {
       out_ << "</material>\n";
     }
     for (const RigidPoint& p : sets_.points)
-      out_ << "<material id=\"" << ++id << "\" name=\"" << p.name << "\" type=\"rigid body\">\n<density>1</density>\n<center_of_mass>" << p.at_mm.x << ',' << p.at_mm.y
-           << ',' << p.at_mm.z << "</center_of_mass>\n</material>\n";
+      out_ << "<material id=\"" << ++id << "\" name=\"" << p.name
+           << "\" type=\"rigid body\">\n<density>1</density>\n<center_of_mass>" << p.at_mm.x << ',' << p.at_mm.y << ','
+           << p.at_mm.z << "</center_of_mass>\n</material>\n";
     out_ << "</Material>\n";
   }
 
@@ -120,7 +128,8 @@ class FebioFile {
         break;
       case MaterialKind::orthotropic:  // FEBio asks for nu31, Abaqus and the law file for nu13
         begin("orthotropic elastic");
-        constant("E1", c[0]), constant("E2", c[1]), constant("E3", c[2]), constant("G12", c[6]), constant("G23", c[8]), constant("G31", c[7]);
+        constant("E1", c[0]), constant("E2", c[1]), constant("E3", c[2]), constant("G12", c[6]), constant("G23", c[8]),
+            constant("G31", c[7]);
         constant("v12", c[3]), constant("v23", c[5]), constant("v31", c[4] * c[2] / c[0]);
         break;
       case MaterialKind::neo_hooke:  // FEBio's own neo-Hookean is another one: not uncoupled
@@ -133,7 +142,8 @@ class FebioFile {
         break;
       case MaterialKind::holzapfel:
         begin("Holzapfel-Gasser-Ogden");
-        constant("c", 2 * c[0]), constant("k1", c[1]), constant("k2", c[2]), constant("kappa", c[3]), constant("gamma", c[4]), constant("k", c[5]);
+        constant("c", 2 * c[0]), constant("k1", c[1]), constant("k2", c[2]), constant("kappa", c[3]),
+            constant("gamma", c[4]), constant("k", c[5]);
         break;
     }
     out_ << "</material>\n";
@@ -147,7 +157,9 @@ class FebioFile {
     }
   }
 
-  void node(std::size_t number, Vec3 p) { out_ << "<node id=\"" << number << "\">" << p.x << ',' << p.y << ',' << p.z << "</node>\n"; }
+  void node(std::size_t number, Vec3 p) {
+    out_ << "<node id=\"" << number << "\">" << p.x << ',' << p.y << ',' << p.z << "</node>\n";
+  }
 
   void mesh(FebioSteps& steps) {
     out_ << "<Mesh>\n<Nodes name=\"NALL\">\n";
@@ -156,7 +168,8 @@ class FebioFile {
     out_ << "</Nodes>\n";
     const bool quadratic = mesh_.second_order();
     for (std::size_t g = 0; g < parts_.size(); ++g) {
-      out_ << "<!-- label " << parts_[g].label << " -->\n<Elements type=\"" << parts_[g].type << "\" name=\"" << parts_[g].name << "\">\n";
+      out_ << "<!-- label " << parts_[g].label << " -->\n<Elements type=\"" << parts_[g].type << "\" name=\""
+           << parts_[g].name << "\">\n";
       for (const std::size_t t : parts_[g].elements) {
         out_ << "<elem id=\"" << t + 1 << "\">";
         if (t >= mesh_.tets.size()) {
@@ -197,8 +210,8 @@ class FebioFile {
       out_ << "</Surface>\n";
     }
     for (const SurfacePair& p : sets_.pairs)
-      out_ << "<SurfacePair name=\"" << p.name << "\">\n<primary>" << p.primary << "</primary>\n<secondary>" << p.secondary
-           << "</secondary>\n</SurfacePair>\n";
+      out_ << "<SurfacePair name=\"" << p.name << "\">\n<primary>" << p.primary << "</primary>\n<secondary>"
+           << p.secondary << "</secondary>\n</SurfacePair>\n";
     steps.discrete_sets();
     out_ << "</Mesh>\n";
   }
@@ -211,7 +224,8 @@ class FebioFile {
 
   void domains() {
     out_ << "<MeshDomains>\n";
-    for (const Part& part : parts_) out_ << "<SolidDomain name=\"" << part.name << "\" mat=\"M_" << part.name << "\"/>\n";
+    for (const Part& part : parts_)
+      out_ << "<SolidDomain name=\"" << part.name << "\" mat=\"M_" << part.name << "\"/>\n";
     for (const ShellSet& s : sets_.shells) {
       out_ << "<ShellDomain name=\"" << s.name << "\" mat=\"M_" << s.name << "\">\n";
       constant("shell_thickness", s.thickness_mm);
@@ -248,7 +262,8 @@ class FebioFile {
     out_ << "<ElementData type=\"mat_axis\" elem_set=\"" << part.name << "\">\n";
     for (std::size_t i = 0; i < part.elements.size(); ++i) {
       const auto& [a, d] = sets_.axes[part.elements[i]];
-      out_ << "<elem lid=\"" << i + 1 << "\"><a>" << a.x << ',' << a.y << ',' << a.z << "</a><d>" << d.x << ',' << d.y << ',' << d.z << "</d></elem>\n";
+      out_ << "<elem lid=\"" << i + 1 << "\"><a>" << a.x << ',' << a.y << ',' << a.z << "</a><d>" << d.x << ',' << d.y
+           << ',' << d.z << "</d></elem>\n";
     }
     out_ << "</ElementData>\n";
   }
@@ -261,16 +276,19 @@ class FebioFile {
       if (!any) out_ << "<Contact>\n";
       any = true;
       const bool tied = p.contact == Contact::tie;
-      out_ << "<contact name=\"" << p.name << "_contact\" surface_pair=\"" << p.name << "\" type=\"" << (tied ? "tied-elastic" : "sliding-elastic") << "\">\n";
+      out_ << "<contact name=\"" << p.name << "_contact\" surface_pair=\"" << p.name << "\" type=\""
+           << (tied ? "tied-elastic" : "sliding-elastic") << "\">\n";
       if (tied) {
-        out_ << "<laugon>AUGLAG</laugon>\n<tolerance>0.01</tolerance>\n<penalty>10</penalty>\n<auto_penalty>1</auto_penalty>\n";
+        out_ << "<laugon>AUGLAG</laugon>\n<tolerance>0.01</tolerance>\n<penalty>10</penalty>\n<auto_penalty>1</"
+                "auto_penalty>\n";
       } else {
         out_ << "<laugon>PENALTY</laugon>\n";
         constant("penalty", p.stiffness_mpa_mm);
         out_ << "<auto_penalty>0</auto_penalty>\n";
         constant("fric_coeff", p.friction);
       }
-      out_ << "<two_pass>0</two_pass>\n<symmetric_stiffness>" << (!tied && p.friction > 0 ? 0 : 1) << "</symmetric_stiffness>\n</contact>\n";
+      out_ << "<two_pass>0</two_pass>\n<symmetric_stiffness>" << (!tied && p.friction > 0 ? 0 : 1)
+           << "</symmetric_stiffness>\n</contact>\n";
     }
     if (any) out_ << "</Contact>\n";
   }
@@ -283,6 +301,8 @@ class FebioFile {
 
 }  // namespace
 
-void write_feb(std::FILE* file, const PreparedMesh& mesh) { FebioFile(file, mesh).write(); }
+void write_feb(std::FILE* file, const PreparedMesh& mesh) {
+  FebioFile(file, mesh).write();
+}
 
 }  // namespace stackmesh

@@ -10,9 +10,10 @@
 
 namespace stackmesh {
 
-/// One step stands in the sections Control, Boundary, Rigid and Loads; several in a section Step each. Step k runs from time k - 1 to
-/// time k. FEBio takes a step's loads away at its end, so each step goes from the values of the one before to its own: what stays the
-/// same is held, what is new grows from nothing, and what is over goes back to nothing.
+/// One step stands in the sections Control, Boundary, Rigid and Loads; several in a section Step each. Step k runs from
+/// time k - 1 to time k. FEBio takes a step's loads away at its end, so each step goes from the values of the one
+/// before to its own: what stays the same is held, what is new grows from nothing, and what is over goes back to
+/// nothing.
 class FebioSteps {
  public:
   FebioSteps(OutputBuffer& out, const PreparedMesh& mesh);
@@ -23,9 +24,9 @@ class FebioSteps {
   void discrete_sets();
   bool has_forces() const;
   void node_data();
-  void acting();       ///< of the one step
+  void acting();  ///< of the one step
   void springs();
-  void further();      ///< the steps, where there are several
+  void further();  ///< the steps, where there are several
   void load_curves();
 
  private:
@@ -46,7 +47,7 @@ class FebioSteps {
   OutputBuffer& out_;
   const PreparedMesh& mesh_;
   const SolverSets& sets_;
-  std::vector<const LoadStep*> steps_;  // the static ones
+  std::vector<const LoadStep*> steps_;         // the static ones
   std::vector<std::array<double, 4>> curves_;  // times and values of the two ends
   std::vector<Ground> grounds_;
   int bcs_ = 0;

@@ -8,8 +8,9 @@ std::string fixed_number(double value, std::size_t width) {
   if (value == 0) return "0.";
   for (int digits = 17; digits > 0; --digits) {
     char buffer[64];
-    const auto end = digits == 17 ? std::to_chars(buffer, buffer + sizeof buffer, value).ptr
-                                  : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
+    const auto end = digits == 17
+                         ? std::to_chars(buffer, buffer + sizeof buffer, value).ptr
+                         : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
     std::string text(buffer, end);
     const std::size_t exponent = text.find('e');
     if (text.find('.') == std::string::npos) text.insert(exponent == std::string::npos ? text.size() : exponent, ".");

@@ -22,8 +22,8 @@ struct Patch {
   std::vector<std::size_t> groups;
 };
 
-/// The surfaces of a mesh as Gmsh has them. A mere mesh has a patch and a group for each pair of labels; in a solver model
-/// the named surfaces are the groups, and a patch is what lies in the same ones.
+/// The surfaces of a mesh as Gmsh has them. A mere mesh has a patch and a group for each pair of labels; in a solver
+/// model the named surfaces are the groups, and a patch is what lies in the same ones.
 struct Surfaces {
   std::vector<Patch> patches;
   std::vector<std::string> groups;
@@ -32,7 +32,9 @@ struct Surfaces {
 
   explicit Surfaces(const PreparedMesh& mesh) {
     for (const NodeSet& n : mesh.sets.node_sets)
-      if (std::none_of(mesh.sets.surfaces.begin(), mesh.sets.surfaces.end(), [&](const FaceSet& f) { return f.name == n.name; })) points.push_back(&n);
+      if (std::none_of(mesh.sets.surfaces.begin(), mesh.sets.surfaces.end(),
+                       [&](const FaceSet& f) { return f.name == n.name; }))
+        points.push_back(&n);
     if (mesh.sets.surfaces.empty()) from_pairs(mesh);
     else from_sets(mesh);
   }
@@ -58,7 +60,8 @@ struct Surfaces {
       groups.push_back(g.name);
       for (std::size_t t = g.begin; t < g.end; ++t) {
         const auto& v = mesh.triangles[t].v;
-        const std::array<std::int32_t, 3> m = mesh.second_order() ? mesh.triangle_mids[t] : std::array<std::int32_t, 3>{-1, -1, -1};
+        const std::array<std::int32_t, 3> m =
+            mesh.second_order() ? mesh.triangle_mids[t] : std::array<std::int32_t, 3>{-1, -1, -1};
         patch.triangles.push_back({v[0], v[1], v[2], m[0], m[1], m[2]});
       }
       patches.push_back(std::move(patch));
@@ -118,7 +121,9 @@ std::int32_t first_surface_tag(const PreparedMesh& mesh, const Surfaces& surface
                   "renumber the label or write another format");
     last = std::max<std::int64_t>(last, g.label);
   }
-  if (last + static_cast<std::int64_t>(std::max(surfaces.groups.size(), surfaces.patches.size()) + surfaces.points.size()) > std::numeric_limits<std::int32_t>::max())
+  if (last + static_cast<std::int64_t>(std::max(surfaces.groups.size(), surfaces.patches.size()) +
+                                       surfaces.points.size()) >
+      std::numeric_limits<std::int32_t>::max())
     fail_output("no Gmsh tag is left for the surfaces", "label " + std::to_string(last),
                 "renumber the label or write another format");
   return static_cast<std::int32_t>(last) + 1;
@@ -136,8 +141,7 @@ void write_names(OutputBuffer& out, const PreparedMesh& mesh, const Surfaces& su
 }
 
 struct Box {
-  Vec3 low{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
-           std::numeric_limits<double>::max()};
+  Vec3 low{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
   Vec3 high = -1.0 * low;
   void add(Vec3 p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -171,7 +175,8 @@ std::vector<Entity> make_entities(const PreparedMesh& mesh, const Surfaces& surf
     Entity entity;
     entity.tag = surface_tag + static_cast<std::int32_t>(i);
     entity.physical_count = patch.groups.size();
-    for (const std::size_t g : patch.groups) entity.physical += " " + std::to_string(surface_tag + static_cast<std::int32_t>(g));
+    for (const std::size_t g : patch.groups)
+      entity.physical += " " + std::to_string(surface_tag + static_cast<std::int32_t>(g));
     for (const auto& t : patch.triangles)
       for (const std::int32_t v : t)
         if (v >= 0) take(entity, v);
@@ -221,8 +226,12 @@ struct WedgeBlocks {
   WedgeBlocks(const PreparedMesh& mesh, const LabelGroup& g) {
     for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w) of[is_pyramid(mesh.wedges[w])].push_back(w);
   }
-  static int type(const PreparedMesh& mesh, int pyramid) { return mesh.second_order() ? (pyramid ? 19 : 18) : (pyramid ? 7 : 6); }
-  std::size_t blocks() const { return static_cast<std::size_t>(!of[0].empty()) + static_cast<std::size_t>(!of[1].empty()); }
+  static int type(const PreparedMesh& mesh, int pyramid) {
+    return mesh.second_order() ? (pyramid ? 19 : 18) : (pyramid ? 7 : 6);
+  }
+  std::size_t blocks() const {
+    return static_cast<std::size_t>(!of[0].empty()) + static_cast<std::size_t>(!of[1].empty());
+  }
 };
 void write_wedge(OutputBuffer& out, const PreparedMesh& mesh, std::size_t w) {
   for (const std::int32_t v : wedge_nodes_of(mesh, w, WedgeOrder::gmsh)) out << ' ' << v + 1;
@@ -240,7 +249,8 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   write_names(out, mesh, surfaces, surface_tag);
 
   // A set of nodes is an entity with a point element at each of them; the nodes are owned by surfaces and volumes.
-  out << "$Entities\n" << surfaces.points.size() << " 0 " << surfaces.patches.size() << ' ' << mesh.labels.size() << '\n';
+  out << "$Entities\n"
+      << surfaces.points.size() << " 0 " << surfaces.patches.size() << ' ' << mesh.labels.size() << '\n';
   for (std::size_t i = 0; i < surfaces.points.size(); ++i) {
     const std::int32_t tag = surfaces.point_tag(surface_tag, i);
     const Vec3 p = mesh.points[surfaces.points[i]->nodes.at(0)];
@@ -253,11 +263,9 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   }
   out << "$EndEntities\n";
 
-  const auto blocks =
-      std::count_if(entities.begin(), entities.end(), [](const Entity& e) { return !e.nodes.empty(); });
+  const auto blocks = std::count_if(entities.begin(), entities.end(), [](const Entity& e) { return !e.nodes.empty(); });
   out << "$Nodes\n"
-      << static_cast<std::int64_t>(blocks) << ' ' << mesh.points.size() << " 1 " << mesh.points.size()
-      << '\n';
+      << static_cast<std::int64_t>(blocks) << ' ' << mesh.points.size() << " 1 " << mesh.points.size() << '\n';
   for (const Entity& e : entities) {
     if (e.nodes.empty()) continue;
     out << e.dimension << ' ' << e.tag << " 0 " << e.nodes.size() << '\n';
@@ -282,7 +290,8 @@ void write_msh4(std::FILE* file, const PreparedMesh& mesh) {
   number = mesh.elements();
   for (std::size_t i = 0; i < surfaces.patches.size(); ++i) {
     const Patch& patch = surfaces.patches[i];
-    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << (mesh.second_order() ? " 9 " : " 2 ") << patch.triangles.size() << '\n';
+    out << "2 " << surface_tag + static_cast<std::int32_t>(i) << (mesh.second_order() ? " 9 " : " 2 ")
+        << patch.triangles.size() << '\n';
     for (const auto& t : patch.triangles) {
       out << ++number;
       write_triangle(out, t);
@@ -330,15 +339,16 @@ void write_msh2(std::FILE* file, const PreparedMesh& mesh) {
     }
   for (const LabelGroup& g : mesh.labels)
     for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w) {
-      out << mesh.tets.size() + w + 1 << ' ' << WedgeBlocks::type(mesh, is_pyramid(mesh.wedges[w])) << " 2 " << g.label << ' ' << g.label;
+      out << mesh.tets.size() + w + 1 << ' ' << WedgeBlocks::type(mesh, is_pyramid(mesh.wedges[w])) << " 2 " << g.label
+          << ' ' << g.label;
       write_wedge(out, mesh, w);
     }
   std::size_t number = mesh.elements();
   for (std::size_t i = 0; i < surfaces.patches.size(); ++i)
     for (const std::size_t g : surfaces.patches[i].groups)
       for (const auto& t : surfaces.patches[i].triangles) {
-        out << ++number << (mesh.second_order() ? " 9 2 " : " 2 2 ") << surface_tag + static_cast<std::int32_t>(g) << ' '
-            << surface_tag + static_cast<std::int32_t>(i);
+        out << ++number << (mesh.second_order() ? " 9 2 " : " 2 2 ") << surface_tag + static_cast<std::int32_t>(g)
+            << ' ' << surface_tag + static_cast<std::int32_t>(i);
         write_triangle(out, t);
       }
   for (std::size_t i = 0; i < surfaces.points.size(); ++i)

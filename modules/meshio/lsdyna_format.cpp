@@ -17,7 +17,8 @@ class DynaFile : FixedFields {
  public:
   DynaFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
     if (mesh.points.size() > 99999999 || mesh.elements() > 99999999)
-      fail_output("LS-DYNA's numbers have at most 8 digits here", std::to_string(mesh.points.size()) + " nodes", "write another format");
+      fail_output("LS-DYNA's numbers have at most 8 digits here", std::to_string(mesh.points.size()) + " nodes",
+                  "write another format");
   }
 
   void write() {
@@ -62,7 +63,8 @@ class DynaFile : FixedFields {
       row({wedge_section(), 15});
       out_ << '\n';
     }
-    if (sets_.placeholder_materials) out_ << "$ no material law was given: E = 1 MPa and a ratio of 0.3 hold the place\n";
+    if (sets_.placeholder_materials)
+      out_ << "$ no material law was given: E = 1 MPa and a ratio of 0.3 hold the place\n";
     for (std::size_t i = 0; i < sets_.materials.size(); ++i) {
       const ElementMaterial& m = sets_.materials[i];
       part(m.name, number(i), 1);
@@ -88,7 +90,9 @@ class DynaFile : FixedFields {
   }
 
   /// Of wedges: parts behind those of materials and skins, a section behind those of skins.
-  std::int64_t wedge_part(std::size_t material) const { return number(sets_.materials.size() + sets_.shells.size() + material); }
+  std::int64_t wedge_part(std::size_t material) const {
+    return number(sets_.materials.size() + sets_.shells.size() + material);
+  }
   std::int64_t wedge_section() const { return number(sets_.shells.size()) + 1; }
 
   void nodes() {
@@ -115,12 +119,14 @@ class DynaFile : FixedFields {
         for (int k = 0; k < 4; ++k) small(number(v[3]));
       out_ << '\n';
     }
-    for (std::size_t i = 0; i < mesh_.wedges.size(); ++i) {  // corners repeated: n5 = n6 and n7 = n8 make a wedge, n5 to n8 a pyramid
+    // corners repeated: n5 = n6 and n7 = n8 make a wedge, n5 to n8 a pyramid
+    for (std::size_t i = 0; i < mesh_.wedges.size(); ++i) {
       const std::size_t e = mesh_.tets.size() + i;
       small(number(e)), small(wedge_part(static_cast<std::size_t>(material[e])));
       out_ << '\n';
       const auto& w = mesh_.wedges[i];
-      const std::array<int, 8> order = is_pyramid(w) ? std::array<int, 8>{0, 3, 4, 1, 2, 2, 2, 2} : std::array<int, 8>{1, 0, 3, 4, 2, 2, 5, 5};
+      const std::array<int, 8> order =
+          is_pyramid(w) ? std::array<int, 8>{0, 3, 4, 1, 2, 2, 2, 2} : std::array<int, 8>{1, 0, 3, 4, 2, 2, 5, 5};
       for (const int k : order) small(number(w[k]));
       out_ << '\n';
     }
@@ -159,7 +165,9 @@ class DynaFile : FixedFields {
       for (std::size_t i = 0; i < sets_.materials.size(); ++i)
         if (sets_.materials[i].label == mesh_.labels[g].label) ids.push_back(number(i));
       for (std::size_t i = 0; i < sets_.materials.size() && !mesh_.wedges.empty(); ++i)
-        if (sets_.materials[i].label == mesh_.labels[g].label && static_cast<std::size_t>(sets_.materials[i].tets.back()) >= mesh_.tets.size()) ids.push_back(wedge_part(i));
+        if (sets_.materials[i].label == mesh_.labels[g].label &&
+            static_cast<std::size_t>(sets_.materials[i].tets.back()) >= mesh_.tets.size())
+          ids.push_back(wedge_part(i));
       list("*SET_PART_LIST_TITLE", deck_name(mesh_.labels[g].name), number(g), ids);
     }
   }
@@ -183,7 +191,8 @@ class DynaFile : FixedFields {
     }
   }
 
-  /// Nodes that move alike along axes: x, y, z, xy, yz, zx, xyz are 1 to 7. All that follow a node along the same axes are one set.
+  /// Nodes that move alike along axes: x, y, z, xy, yz, zx, xyz are 1 to 7. All that follow a node along the same axes
+  /// are one set.
   void ties() {
     constexpr int kKind[8] = {0, 1, 2, 4, 3, 6, 5, 7};  // of axes as bits: x = 1, y = 2, z = 4
     std::map<std::pair<std::int32_t, int>, std::vector<std::int64_t>> sets;
@@ -266,7 +275,8 @@ class DynaFile : FixedFields {
     const double g[3] = {step->gravity_mm_s2.x, step->gravity_mm_s2.y, step->gravity_mm_s2.z};
     for (int axis = 0; axis < 3; ++axis)
       if (g[axis] != 0) {  // the base is accelerated: bodies the other way
-        out_ << "*LOAD_BODY_" << "XYZ"[axis] << '\n';
+        out_ << "*LOAD_BODY_"
+             << "XYZ"[axis] << '\n';
         row({1});
         real(-g[axis], 10);
         out_ << '\n';
@@ -282,7 +292,8 @@ class DynaFile : FixedFields {
 
 void write_dyna(std::FILE* file, const PreparedMesh& mesh) {
   if (mesh.second_order() && !mesh.wedges.empty())
-    fail_usage("second-order wedges are not written to LS-DYNA's .k", "--layer with --order 2", "take --order 1, or choose .inp .feb .bdf .cdb or .vtu");
+    fail_usage("second-order wedges are not written to LS-DYNA's .k", "--layer with --order 2",
+               "take --order 1, or choose .inp .feb .bdf .cdb or .vtu");
   OutputBuffer out(file);
   DynaFile(out, mesh).write();
 }

@@ -15,9 +15,11 @@ namespace {
 /// Bulk data: large fields (16 characters) for real numbers, small ones (8) for whole numbers.
 class NastranFile : FixedFields {
  public:
-  NastranFile(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets), steps_(out, mesh) {
+  NastranFile(OutputBuffer& out, const PreparedMesh& mesh)
+      : FixedFields(out), mesh_(mesh), sets_(mesh.sets), steps_(out, mesh) {
     if (mesh.points.size() > 99999999 || mesh.elements() > 99999999)
-      fail_output("Nastran's numbers have at most 8 digits", std::to_string(mesh.points.size()) + " nodes", "write another format");
+      fail_output("Nastran's numbers have at most 8 digits", std::to_string(mesh.points.size()) + " nodes",
+                  "write another format");
   }
 
   void write() {
@@ -125,7 +127,8 @@ class NastranFile : FixedFields {
     }
     for (std::size_t w = 0; w < mesh_.wedges.size(); ++w) {
       const std::size_t e = mesh_.tets.size() + w;
-      element(is_pyramid(mesh_.wedges[w]) ? "CPYRAM  " : "CPENTA  ", static_cast<std::int64_t>(e) + 1, property[e], wedge_nodes_of(mesh_, w, WedgeOrder::exodus));
+      element(is_pyramid(mesh_.wedges[w]) ? "CPYRAM  " : "CPENTA  ", static_cast<std::int64_t>(e) + 1, property[e],
+              wedge_nodes_of(mesh_, w, WedgeOrder::exodus));
     }
     shell_ = 0;
     for (const std::int64_t id : ids_) shell_ = std::max(shell_, id);
@@ -135,7 +138,8 @@ class NastranFile : FixedFields {
       ++id;
       for (const TetFace f : s.faces) {
         const auto face = mesh_.outward_face(f);
-        element(mesh_.second_order() ? "CTRIA6  " : "CTRIA3  ", ++number, id, {face.begin(), face.begin() + (mesh_.second_order() ? 6 : 3)});
+        element(mesh_.second_order() ? "CTRIA6  " : "CTRIA3  ", ++number, id,
+                {face.begin(), face.begin() + (mesh_.second_order() ? 6 : 3)});
       }
     }
   }
@@ -245,13 +249,15 @@ class NastranFile : FixedFields {
       }
     }
     for (const SurfacePair& p : sets_.pairs)
-      if (p.contact != Contact::tie) out_ << "$ surfaces that face each other, without contact here: " << p.primary << " and " << p.secondary << '\n';
+      if (p.contact != Contact::tie)
+        out_ << "$ surfaces that face each other, without contact here: " << p.primary << " and " << p.secondary
+             << '\n';
   }
 
   const PreparedMesh& mesh_;
   const SolverSets& sets_;
-  std::vector<std::int64_t> ids_;  // of properties and materials
-  std::int64_t shell_ = 0;         // the last number before those of the skins
+  std::vector<std::int64_t> ids_;                // of properties and materials
+  std::int64_t shell_ = 0;                       // the last number before those of the skins
   std::int64_t number_ = 0, last_property_ = 0;  // of the last element and property so far
   NastranSteps steps_;
 };

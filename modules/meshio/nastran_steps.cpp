@@ -4,8 +4,10 @@
 
 namespace stackmesh {
 
-NastranSteps::NastranSteps(OutputBuffer& out, const PreparedMesh& mesh) : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
-  const bool frequency = std::any_of(sets_.steps.begin(), sets_.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::frequency; });
+NastranSteps::NastranSteps(OutputBuffer& out, const PreparedMesh& mesh)
+    : FixedFields(out), mesh_(mesh), sets_(mesh.sets) {
+  const bool frequency = std::any_of(sets_.steps.begin(), sets_.steps.end(),
+                                     [](const LoadStep& s) { return s.analysis == Analysis::frequency; });
   for (const LoadStep& s : sets_.steps)
     if (frequency == (s.analysis == Analysis::frequency)) steps_.push_back(&s);
 }
@@ -43,9 +45,12 @@ void NastranSteps::bulk(std::int64_t& number, std::int64_t& property) {
 }
 
 bool NastranSteps::moves(const LoadStep& step) const {
-  const auto any = [](const auto& values) { return std::any_of(values.begin(), values.end(), [](const auto& v) { return v && *v != 0; }); };
+  const auto any = [](const auto& values) {
+    return std::any_of(values.begin(), values.end(), [](const auto& v) { return v && *v != 0; });
+  };
   return std::any_of(step.supports.begin(), step.supports.end(), [&](const Support& s) { return any(s.value_mm); }) ||
-         std::any_of(step.point_supports.begin(), step.point_supports.end(), [&](const PointSupport& s) { return any(s.value); });
+         std::any_of(step.point_supports.begin(), step.point_supports.end(),
+                     [&](const PointSupport& s) { return any(s.value); });
 }
 
 /// Rigid points: a node each, and a rigid element on which the nodes of its set depend.
@@ -90,7 +95,10 @@ void NastranSteps::springs(std::int64_t& number, std::int64_t& property) {
   for (const SpringSet& s : sets_.springs) {
     out_ << "$ " << s.name << ": N/mm, by each node's share of the area\n";
     for (const GroundSpring& g : s.springs) {
-      const int axis = std::abs(g.direction.x) == 1 ? 1 : std::abs(g.direction.y) == 1 ? 2 : std::abs(g.direction.z) == 1 ? 3 : 0;
+      const int axis = std::abs(g.direction.x) == 1   ? 1
+                       : std::abs(g.direction.y) == 1 ? 2
+                       : std::abs(g.direction.z) == 1 ? 3
+                                                      : 0;
       if (axis > 0) {
         out_ << "CELAS2* ";
         large(++number);
@@ -153,7 +161,8 @@ void NastranSteps::step(std::size_t k) {
       if (support.value[axis]) axes += static_cast<char>('1' + axis);
     hold(spc, axes, {point_node(support.point)});
     for (int axis = 0; axis < 6; ++axis)
-      if (support.value[axis] && *support.value[axis] != 0) move(load, point_node(support.point), axis, *support.value[axis]);
+      if (support.value[axis] && *support.value[axis] != 0)
+        move(load, point_node(support.point), axis, *support.value[axis]);
   }
   if (solution() == 103) {
     out_ << "EIGRL   ";
@@ -232,9 +241,11 @@ void NastranSteps::vector(const char* card, std::int64_t set, std::int64_t node,
   out_ << '\n';
 }
 
-/// On triangles of wedges: G1 a corner of the face; of pyramids: both corners of the base's edge, inwards. On faces of tetrahedra: G1 a corner of the face, G4 the corner that is not on it. A pressure above 0 presses inwards.
+/// On triangles of wedges: G1 a corner of the face; of pyramids: both corners of the base's edge, inwards. On faces of
+/// tetrahedra: G1 a corner of the face, G4 the corner that is not on it. A pressure above 0 presses inwards.
 void NastranSteps::pressure(std::int64_t set, const Pressure& p) {
-  // Two corners of the element tell which of its faces: one on it, and the opposite one, or of a pyramid its diagonal one (-1: a wedge needs the first only).
+  // Two corners of the element tell which of its faces: one on it, and the opposite one, or of a pyramid its diagonal
+  // one (-1: a wedge needs the first only).
   const auto card = [&](TetFace f, std::int32_t on, std::int32_t opposite) {
     out_ << "PLOAD4* ";
     large(set);
@@ -252,7 +263,11 @@ void NastranSteps::pressure(std::int64_t set, const Pressure& p) {
     for (const TetFace f : s.faces) {
       if (static_cast<std::size_t>(f.tet) >= mesh_.tets.size()) {
         const auto& wedge = mesh_.wedges[static_cast<std::size_t>(f.tet) - mesh_.tets.size()];
-        card(f, wedge[f.face == 0 ? 0 : is_pyramid(wedge) ? 4 : 3], is_pyramid(wedge) ? wedge[f.face == 0 ? 1 : 3] : -1);
+        card(f,
+             wedge[f.face == 0         ? 0
+                   : is_pyramid(wedge) ? 4
+                                       : 3],
+             is_pyramid(wedge) ? wedge[f.face == 0 ? 1 : 3] : -1);
         continue;
       }
       const auto& tet = mesh_.tets[f.tet];

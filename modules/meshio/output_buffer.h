@@ -8,8 +8,7 @@
 
 namespace stackmesh {
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
-              "the binary formats are written in the order of the host");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the binary formats are written in the order of the host");
 
 /// Gathers text and bytes into large chunks. After a failed write it stays silent, so that errno and ferror()
 /// still tell AtomicFiles what happened.

@@ -13,7 +13,9 @@ namespace {
 
 using Pair = std::pair<Label, Label>;
 
-std::string space_name(Space space) { return space == Space::lps ? "LPS" : space == Space::ras ? "RAS" : ""; }
+std::string space_name(Space space) {
+  return space == Space::lps ? "LPS" : space == Space::ras ? "RAS" : "";
+}
 
 /// A stable order by key: `order` lists the items, `begins` the first of each key (and the end).
 template <class Key>
@@ -90,8 +92,7 @@ void group_triangles(std::vector<InterfaceTriangle> triangles, const LabelNames&
   for (const std::size_t i : groups.order) mesh.triangles.push_back(triangles[i]);
   for (std::size_t g = 0; g < groups.keys.size(); ++g) {
     const auto [below, above] = groups.keys[g];
-    mesh.pairs.push_back(
-        {below, above, groups.begins[g], groups.begins[g + 1], names[below] + "|" + names[above]});
+    mesh.pairs.push_back({below, above, groups.begins[g], groups.begins[g + 1], names[below] + "|" + names[above]});
   }
 }
 
@@ -99,8 +100,7 @@ template <std::size_t N>
 void check(const std::array<std::int32_t, N>& corners, std::size_t points, const std::string& path) {
   for (const std::int32_t v : corners)
     if (v < 0 || static_cast<std::size_t>(v) >= points)
-      fail_internal("a mesh to be written names point " + std::to_string(v) + " of " + std::to_string(points),
-                    path);
+      fail_internal("a mesh to be written names point " + std::to_string(v) + " of " + std::to_string(points), path);
 }
 
 /// Takes over the points that are used, in their order, and renumbers the corners.
@@ -207,8 +207,8 @@ PreparedMesh prepare_surface(const InterfaceComplex& surface, const MeshWriteOpt
   return prepare_triangles(std::move(triangles), surface, options, path);
 }
 
-PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
-                                   const MeshWriteOptions& options, const std::string& path) {
+PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label, const MeshWriteOptions& options,
+                                   const std::string& path) {
   std::vector<InterfaceTriangle> triangles;
   for (InterfaceTriangle t : surface.triangles) {
     if (t.below == t.above || (t.below != label && t.above != label)) continue;
@@ -220,8 +220,7 @@ PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
 
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path) {
   if (mesh.elements() == 0)
-    throw Error(ErrorKind::no_result, "the volume mesh is empty", path,
-                "check the labels that were requested");
+    throw Error(ErrorKind::no_result, "the volume mesh is empty", path, "check the labels that were requested");
   if (mesh.elements() != mesh.labels.size())
     fail_internal("a mesh to be written has " + std::to_string(mesh.elements()) + " elements and " +
                       std::to_string(mesh.labels.size()) + " labels",
@@ -229,7 +228,8 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
   PreparedMesh prepared;
   prepared.space = space_name(mesh.space);
   const Grouping<Label> groups(mesh.tets.size(), [&](std::size_t i) { return mesh.labels[i]; });
-  const bool some = (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size()) || (!mesh.wedge_mid.empty() && mesh.wedge_mid.size() != mesh.wedges.size());
+  const bool some = (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size()) ||
+                    (!mesh.wedge_mid.empty() && mesh.wedge_mid.size() != mesh.wedges.size());
   if (some || (!mesh.tets.empty() && !mesh.wedges.empty() && mesh.mid.empty() != mesh.wedge_mid.empty()))
     fail_internal("a mesh to be written has mid-side nodes for some of its elements only", path);
   prepared.tets.reserve(mesh.tets.size());
@@ -239,7 +239,8 @@ PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options
   std::vector<InterfaceTriangle> triangles = mesh.faces;
   for (InterfaceTriangle& t : triangles)
     if (wants_flip(t)) flip(t);
-  const Grouping<Label> wedge_groups(mesh.wedges.size(), [&](std::size_t i) { return mesh.labels[mesh.tets.size() + i]; });
+  const Grouping<Label> wedge_groups(mesh.wedges.size(),
+                                     [&](std::size_t i) { return mesh.labels[mesh.tets.size() + i]; });
   for (const std::size_t i : wedge_groups.order) prepared.wedges.push_back(mesh.wedges[i]);
   if (!mesh.wedge_mid.empty())
     for (const std::size_t i : wedge_groups.order) prepared.wedge_mids.push_back(mesh.wedge_mid[i]);
@@ -274,13 +275,16 @@ PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& opt
   named.labels = model.labels;
   PreparedMesh prepared = prepare_volume(model.mesh, named, path);
   // The sets count tets and points as the model does.
-  if (prepared.points.size() != model.mesh.points.size() || prepared.tets != model.mesh.tets || prepared.wedges != model.mesh.wedges)
+  if (prepared.points.size() != model.mesh.points.size() || prepared.tets != model.mesh.tets ||
+      prepared.wedges != model.mesh.wedges)
     fail_internal("a solver model to be written is not ordered by label, or has unused points", path);
   prepared.sets = model.sets;
   return prepared;
 }
 
-std::array<std::int32_t, 6> PreparedMesh::outward_face(TetFace f) const { return outward_face_of(f, tets, tet_mids, wedges, wedge_mids); }
+std::array<std::int32_t, 6> PreparedMesh::outward_face(TetFace f) const {
+  return outward_face_of(f, tets, tet_mids, wedges, wedge_mids);
+}
 
 std::string UniqueNames::add(std::string name) {
   if (name.size() > max_length_) name.resize(max_length_);

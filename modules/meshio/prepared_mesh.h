@@ -10,7 +10,8 @@
 
 namespace stackmesh {
 
-/// Tets of one label: [begin, end) of PreparedMesh::tets. And its wedges: [wedge_begin, wedge_end) of PreparedMesh::wedges.
+/// Tets of one label: [begin, end) of PreparedMesh::tets. And its wedges: [wedge_begin, wedge_end) of
+/// PreparedMesh::wedges.
 struct LabelGroup {
   Label label = 0;
   std::size_t begin = 0, end = 0;
@@ -33,15 +34,16 @@ struct PreparedMesh {
   std::vector<Vec3> points;
   std::vector<InterfaceTriangle> triangles;
   std::vector<std::array<std::int32_t, 4>> tets;
-  std::vector<std::array<std::int32_t, 6>> tet_mids;           ///< second order: mid-side nodes of the tets (kTetEdges)
-  std::vector<std::array<std::int32_t, 6>> wedges;             ///< as TetMesh has them; elements are counted through, tets first
-  std::vector<std::array<std::int32_t, 9>> wedge_mids;         ///< second order
+  std::vector<std::array<std::int32_t, 6>> tet_mids;  ///< second order: mid-side nodes of the tets (kTetEdges)
+  /// as TetMesh has them; elements are counted through, tets first
+  std::vector<std::array<std::int32_t, 6>> wedges;
+  std::vector<std::array<std::int32_t, 9>> wedge_mids;     ///< second order
   std::vector<std::array<std::int32_t, 3>> triangle_mids;  ///< second order: of the triangles, each behind its corner
-  std::vector<PairGroup> pairs;    ///< ascending (below, above)
-  std::vector<LabelGroup> labels;  ///< ascending; empty for a surface
-  std::vector<LabelInfo> named;    ///< every label of the mesh but the background, with its unique name and its colour
-  std::string space;               ///< "LPS", "RAS" or ""
-  SolverSets sets;                 ///< of a solver model; for a deck of a mere mesh by add_interface_sets()
+  std::vector<PairGroup> pairs;                            ///< ascending (below, above)
+  std::vector<LabelGroup> labels;                          ///< ascending; empty for a surface
+  std::vector<LabelInfo> named;  ///< every label of the mesh but the background, with its unique name and its colour
+  std::string space;             ///< "LPS", "RAS" or ""
+  SolverSets sets;               ///< of a solver model; for a deck of a mere mesh by add_interface_sets()
 
   bool second_order() const { return !tet_mids.empty() || !wedge_mids.empty(); }
   std::size_t elements() const { return tets.size() + wedges.size(); }
@@ -58,16 +60,16 @@ struct PreparedMesh {
   std::string space_mark() const { return space.empty() ? "" : "SPACE=" + space; }
 };
 
-PreparedMesh prepare_surface(const InterfaceComplex& surface, const MeshWriteOptions& options,
-                             const std::string& path);
+PreparedMesh prepare_surface(const InterfaceComplex& surface, const MeshWriteOptions& options, const std::string& path);
 /// The closed surface of one label, normals out of it.
-PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label,
-                                   const MeshWriteOptions& options, const std::string& path);
+PreparedMesh prepare_label_surface(const InterfaceComplex& surface, Label label, const MeshWriteOptions& options,
+                                   const std::string& path);
 PreparedMesh prepare_volume(const TetMesh& mesh, const MeshWriteOptions& options, const std::string& path);
 PreparedMesh prepare_model(const SolverModel& model, const MeshWriteOptions& options, const std::string& path);
 
 /// For each triangle the element of its label `below` (where there is none, `above`) that has it as a face.
-/// @param both_sides every label of a triangle but 0 must have such a tet; else one of them (parts have nodes of their own)
+/// @param both_sides every label of a triangle but 0 must have such a tet; else one of them (parts have nodes of their
+/// own)
 /// @throws Error(internal) where that is not so
 std::vector<TetFace> face_owners(const PreparedMesh& mesh, bool both_sides);
 

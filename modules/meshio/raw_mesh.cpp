@@ -11,7 +11,9 @@ namespace {
 
 constexpr const char* kMend = "write or copy the file again";
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
+}
 
 template <class T>
 T load(const char* bytes, bool swap) {
@@ -24,18 +26,28 @@ T load(const char* bytes, bool swap) {
 
 std::string quoted(std::string_view text) {
   std::string clean;
-  for (const char c : text.substr(0, 24)) clean += static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126 ? '?' : c;
+  for (const char c : text.substr(0, 24))
+    clean += static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126 ? '?' : c;
   return "'" + clean + (text.size() > 24 ? "..." : "") + "'";
 }
 
 /// VTK's name of a cell type in plain words.
 std::string kind_of(int vtk_type) {
   switch (vtk_type) {
-    case 11: return "voxels";
-    case 12: case 25: case 29: return "hexahedra";
-    case 13: case 26: return "wedges";
-    case 14: case 27: return "pyramids";
-    default: return "cells of VTK type " + std::to_string(vtk_type);
+    case 11:
+      return "voxels";
+    case 12:
+    case 25:
+    case 29:
+      return "hexahedra";
+    case 13:
+    case 26:
+      return "wedges";
+    case 14:
+    case 27:
+      return "pyramids";
+    default:
+      return "cells of VTK type " + std::to_string(vtk_type);
   }
 }
 
@@ -45,7 +57,9 @@ void MeshBytes::fail(const std::string& what) const {
   fail_input(what, path_ + ", byte " + std::to_string(at_ - begin_), kMend);
 }
 
-void MeshBytes::fail_plainly(const std::string& what, const std::string& mend) const { fail_input(what, path_, mend); }
+void MeshBytes::fail_plainly(const std::string& what, const std::string& mend) const {
+  fail_input(what, path_, mend);
+}
 
 bool MeshBytes::line(std::string_view& text) {
   if (at_ == end_) return false;
@@ -71,14 +85,18 @@ std::string_view MeshBytes::word(char comment) {
 double MeshBytes::number(const char* what, char comment) {
   const std::string_view text = word(comment);
   const std::optional<double> value = to_number(text);
-  if (!value) fail(text.empty() ? std::string("the file ends within its ") + what : quoted(text) + " where " + what + " should be");
+  if (!value)
+    fail(text.empty() ? std::string("the file ends within its ") + what
+                      : quoted(text) + " where " + what + " should be");
   return *value;
 }
 
 std::int64_t MeshBytes::integer(const char* what, char comment) {
   const std::string_view text = word(comment);
   const std::optional<std::int64_t> value = to_integer(text);
-  if (!value) fail(text.empty() ? std::string("the file ends within its ") + what : quoted(text) + " where " + what + " should be");
+  if (!value)
+    fail(text.empty() ? std::string("the file ends within its ") + what
+                      : quoted(text) + " where " + what + " should be");
   return *value;
 }
 
@@ -102,7 +120,9 @@ std::optional<double> to_number(std::string_view text) {
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   if (result.ec == std::errc::result_out_of_range && result.ptr == text.data() + text.size()) {
     const auto e = text.find_first_of("eE");  // below the smallest number is 0; beyond the largest is none
-    return e != std::string_view::npos && e + 1 < text.size() && text[e + 1] == '-' ? 0.0 : std::numeric_limits<double>::infinity();
+    return e != std::string_view::npos && e + 1 < text.size() && text[e + 1] == '-'
+               ? 0.0
+               : std::numeric_limits<double>::infinity();
   }
   if (text.empty() || result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
   return value;
@@ -124,21 +144,49 @@ std::string_view trimmed(std::string_view text) {
 
 std::size_t size_of(Scalar type) {
   switch (type) {
-    case Scalar::i8: case Scalar::u8: return 1;
-    case Scalar::i16: case Scalar::u16: return 2;
-    case Scalar::i32: case Scalar::u32: case Scalar::f32: return 4;
-    default: return 8;
+    case Scalar::i8:
+    case Scalar::u8:
+      return 1;
+    case Scalar::i16:
+    case Scalar::u16:
+      return 2;
+    case Scalar::i32:
+    case Scalar::u32:
+    case Scalar::f32:
+      return 4;
+    default:
+      return 8;
   }
 }
 
 std::optional<Scalar> scalar_type(std::string_view name) {
-  static const std::map<std::string, Scalar, std::less<>> kTypes = {
-      {"char", Scalar::i8}, {"int8", Scalar::i8}, {"uchar", Scalar::u8}, {"uint8", Scalar::u8}, {"unsigned_char", Scalar::u8},
-      {"bit", Scalar::u8}, {"short", Scalar::i16}, {"int16", Scalar::i16}, {"ushort", Scalar::u16}, {"uint16", Scalar::u16},
-      {"unsigned_short", Scalar::u16}, {"int", Scalar::i32}, {"int32", Scalar::i32}, {"uint", Scalar::u32}, {"uint32", Scalar::u32},
-      {"unsigned_int", Scalar::u32}, {"long", Scalar::i64}, {"int64", Scalar::i64}, {"vtktypeint64", Scalar::i64},
-      {"vtkidtype", Scalar::i64}, {"unsigned_long", Scalar::u64}, {"uint64", Scalar::u64}, {"float", Scalar::f32},
-      {"float32", Scalar::f32}, {"double", Scalar::f64}, {"float64", Scalar::f64}, {"vtktypeint32", Scalar::i32}};
+  static const std::map<std::string, Scalar, std::less<>> kTypes = {{"char", Scalar::i8},
+                                                                    {"int8", Scalar::i8},
+                                                                    {"uchar", Scalar::u8},
+                                                                    {"uint8", Scalar::u8},
+                                                                    {"unsigned_char", Scalar::u8},
+                                                                    {"bit", Scalar::u8},
+                                                                    {"short", Scalar::i16},
+                                                                    {"int16", Scalar::i16},
+                                                                    {"ushort", Scalar::u16},
+                                                                    {"uint16", Scalar::u16},
+                                                                    {"unsigned_short", Scalar::u16},
+                                                                    {"int", Scalar::i32},
+                                                                    {"int32", Scalar::i32},
+                                                                    {"uint", Scalar::u32},
+                                                                    {"uint32", Scalar::u32},
+                                                                    {"unsigned_int", Scalar::u32},
+                                                                    {"long", Scalar::i64},
+                                                                    {"int64", Scalar::i64},
+                                                                    {"vtktypeint64", Scalar::i64},
+                                                                    {"vtkidtype", Scalar::i64},
+                                                                    {"unsigned_long", Scalar::u64},
+                                                                    {"uint64", Scalar::u64},
+                                                                    {"float", Scalar::f32},
+                                                                    {"float32", Scalar::f32},
+                                                                    {"double", Scalar::f64},
+                                                                    {"float64", Scalar::f64},
+                                                                    {"vtktypeint32", Scalar::i32}};
   const auto it = kTypes.find(lower_case(name));
   if (it == kTypes.end()) return std::nullopt;
   return it->second;
@@ -153,15 +201,25 @@ double read_scalar(const char* bytes, Scalar type, bool swap) {
 
 std::int64_t read_integer(const char* bytes, Scalar type, bool swap) {
   switch (type) {
-    case Scalar::i8: return static_cast<std::int8_t>(*bytes);
-    case Scalar::u8: return static_cast<std::uint8_t>(*bytes);
-    case Scalar::i16: return load<std::int16_t>(bytes, swap);
-    case Scalar::u16: return load<std::uint16_t>(bytes, swap);
-    case Scalar::i32: return load<std::int32_t>(bytes, swap);
-    case Scalar::u32: return load<std::uint32_t>(bytes, swap);
-    case Scalar::i64: return load<std::int64_t>(bytes, swap);
-    case Scalar::u64: return static_cast<std::int64_t>(load<std::uint64_t>(bytes, swap));
-    case Scalar::f32: case Scalar::f64: break;
+    case Scalar::i8:
+      return static_cast<std::int8_t>(*bytes);
+    case Scalar::u8:
+      return static_cast<std::uint8_t>(*bytes);
+    case Scalar::i16:
+      return load<std::int16_t>(bytes, swap);
+    case Scalar::u16:
+      return load<std::uint16_t>(bytes, swap);
+    case Scalar::i32:
+      return load<std::int32_t>(bytes, swap);
+    case Scalar::u32:
+      return load<std::uint32_t>(bytes, swap);
+    case Scalar::i64:
+      return load<std::int64_t>(bytes, swap);
+    case Scalar::u64:
+      return static_cast<std::int64_t>(load<std::uint64_t>(bytes, swap));
+    case Scalar::f32:
+    case Scalar::f64:
+      break;
   }
   const double value = type == Scalar::f32 ? static_cast<double>(load<float>(bytes, swap)) : load<double>(bytes, swap);
   return value > -9e18 && value < 9e18 ? std::llround(value) : -1;
@@ -177,7 +235,9 @@ void RawMesh::add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
 }
 
 void RawMesh::add_wedge(const std::array<std::int64_t, 15>& nodes, bool second_order) {
-  const auto index = [](std::int64_t i) { return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i); };
+  const auto index = [](std::int64_t i) {
+    return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i);
+  };
   auto& corners = wedges.emplace_back();
   for (int k = 0; k < 6; ++k) corners[k] = index(nodes[k]);
   wedge_cell.push_back(static_cast<std::int32_t>(cells));
@@ -200,19 +260,39 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
   using namespace vtk_cell;
   const auto wants = [&](std::size_t nodes) {
     if (count != nodes)
-      fail_input("a cell of VTK type " + std::to_string(type) + " with " + std::to_string(count) + " nodes", path + ", cell " + std::to_string(cells),
-                 kMend);
+      fail_input("a cell of VTK type " + std::to_string(type) + " with " + std::to_string(count) + " nodes",
+                 path + ", cell " + std::to_string(cells), kMend);
   };
   const auto index = [](std::int64_t i) {
     return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i);
   };
   switch (type) {
-    case vertex: case poly_vertex: case line: case poly_line: case quadratic_edge: break;
-    case triangle: wants(3); add_triangle(n[0], n[1], n[2]); break;
-    case quadratic_triangle: wants(6); ++quadratic_triangles; add_triangle(n[0], n[1], n[2]); break;
-    case quad: wants(4); add_polygon(n, 4); return;
-    case quadratic_quad: wants(8); add_polygon(n, 4); return;
-    case polygon: add_polygon(n, count); return;
+    case vertex:
+    case poly_vertex:
+    case line:
+    case poly_line:
+    case quadratic_edge:
+      break;
+    case triangle:
+      wants(3);
+      add_triangle(n[0], n[1], n[2]);
+      break;
+    case quadratic_triangle:
+      wants(6);
+      ++quadratic_triangles;
+      add_triangle(n[0], n[1], n[2]);
+      break;
+    case quad:
+      wants(4);
+      add_polygon(n, 4);
+      return;
+    case quadratic_quad:
+      wants(8);
+      add_polygon(n, 4);
+      return;
+    case polygon:
+      add_polygon(n, count);
+      return;
     case strip:
       ++strips;
       for (std::size_t i = 0; i + 2 < count; ++i) {
@@ -220,7 +300,8 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
         else add_triangle(n[i + 1], n[i], n[i + 2]);
       }
       break;
-    case tet: case quadratic_tet: {
+    case tet:
+    case quadratic_tet: {
       wants(type == tet ? 4 : 10);
       tets.push_back({index(n[0]), index(n[1]), index(n[2]), index(n[3])});
       tet_cell.push_back(static_cast<std::int32_t>(cells));
@@ -231,7 +312,8 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
       }
       break;
     }
-    case wedge: case quadratic_wedge: {
+    case wedge:
+    case quadratic_wedge: {
       const bool second = type == quadratic_wedge;
       if (count != (second ? 15u : 6u)) {
         ++unsupported[kind_of(type)];
@@ -242,7 +324,8 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
       add_wedge(nodes, second);
       break;
     }
-    case pyramid: case quadratic_pyramid: {
+    case pyramid:
+    case quadratic_pyramid: {
       const bool second = type == quadratic_pyramid;
       if (count != (second ? 13u : 5u)) {
         ++unsupported[kind_of(type)];
@@ -253,7 +336,8 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
       add_wedge(nodes, second);
       break;
     }
-    default: ++unsupported[kind_of(type)];
+    default:
+      ++unsupported[kind_of(type)];
   }
   ++cells;
 }

@@ -23,7 +23,8 @@ class MeshBytes {
 
   /// @throws Error(input): WHAT, path, byte or line; ...
   [[noreturn]] void fail(const std::string& what) const;
-  [[noreturn]] void fail_plainly(const std::string& what, const std::string& mend) const;  ///< without a place in the file
+  /// without a place in the file
+  [[noreturn]] void fail_plainly(const std::string& what, const std::string& mend) const;
 
   const std::string& path() const { return path_; }
   std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
@@ -95,7 +96,7 @@ struct RawMesh {
 
   struct Set {
     std::string name;
-    std::optional<std::int64_t> number;  ///< where the file tells it
+    std::optional<std::int64_t> number;        ///< where the file tells it
     std::optional<std::int64_t> below, above;  ///< of an interface between two labels
   };
   std::vector<Set> sets;
@@ -106,9 +107,9 @@ struct RawMesh {
   };
   std::vector<Name> names;  ///< of numbers in an array (Gmsh's physical names)
 
-  std::string space;                                   ///< "LPS" or "RAS" where a mark says so
+  std::string space;                                              ///< "LPS" or "RAS" where a mark says so
   std::size_t polygons = 0, quadratic_triangles = 0, strips = 0;  ///< made into plain triangles
-  std::map<std::string, std::size_t> unsupported;      ///< "hexahedra" -> how many
+  std::map<std::string, std::size_t> unsupported;                 ///< "hexahedra" -> how many
   bool has_quadratic = false;
 
   /// A cell by VTK's type number and node order; advances the cell count. Nodes must be checked by finish.
@@ -125,8 +126,8 @@ struct RawMesh {
 /// VTK's cell types that are met.
 namespace vtk_cell {
 inline constexpr int vertex = 1, poly_vertex = 2, line = 3, poly_line = 4, triangle = 5, strip = 6, polygon = 7,
-                     quad = 9, tet = 10, quadratic_edge = 21, quadratic_triangle = 22, quadratic_quad = 23,
-                     wedge = 13, pyramid = 14, quadratic_tet = 24, quadratic_wedge = 26, quadratic_pyramid = 27;
+                     quad = 9, tet = 10, quadratic_edge = 21, quadratic_triangle = 22, quadratic_quad = 23, wedge = 13,
+                     pyramid = 14, quadratic_tet = 24, quadratic_wedge = 26, quadratic_pyramid = 27;
 }
 
 void read_stl(MeshBytes& in, RawMesh& mesh);

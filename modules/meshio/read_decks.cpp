@@ -20,11 +20,14 @@ int vtk_type_of(const std::string& type) {
   if (begins("c3d15") || begins("dc3d15")) return vtk_cell::quadratic_wedge;
   if (begins("c3d5")) return vtk_cell::pyramid;
   if (begins("sc8")) return 12;
-  if (begins("stri3") || begins("s3") || begins("m3d3") || begins("sfm3d3") || begins("r3d3") || begins("cps3") || begins("cpe3") || begins("ds3") ||
-      begins("dc2d3"))
+  if (begins("stri3") || begins("s3") || begins("m3d3") || begins("sfm3d3") || begins("r3d3") || begins("cps3") ||
+      begins("cpe3") || begins("ds3") || begins("dc2d3"))
     return vtk_cell::triangle;
-  if (begins("stri65") || begins("s6") || begins("m3d6") || begins("sfm3d6") || begins("cps6") || begins("cpe6")) return vtk_cell::quadratic_triangle;
-  if (begins("s4") || begins("m3d4") || begins("sfm3d4") || begins("r3d4") || begins("cps4") || begins("cpe4") || begins("ds4") || begins("dc2d4")) return vtk_cell::quad;
+  if (begins("stri65") || begins("s6") || begins("m3d6") || begins("sfm3d6") || begins("cps6") || begins("cpe6"))
+    return vtk_cell::quadratic_triangle;
+  if (begins("s4") || begins("m3d4") || begins("sfm3d4") || begins("r3d4") || begins("cps4") || begins("cpe4") ||
+      begins("ds4") || begins("dc2d4"))
+    return vtk_cell::quad;
   if (begins("s8") || begins("m3d8") || begins("cps8") || begins("cpe8")) return vtk_cell::quadratic_quad;
   return 0;
 }
@@ -33,7 +36,11 @@ std::size_t node_count(int vtk_type) {
   using namespace vtk_cell;
   if (vtk_type == wedge || vtk_type == pyramid) return vtk_type == wedge ? 6 : 5;
   if (vtk_type == quadratic_wedge) return 15;
-  return vtk_type == tet || vtk_type == quad ? 4 : vtk_type == triangle ? 3 : vtk_type == quadratic_tet ? 10 : vtk_type == quadratic_triangle ? 6 : 8;
+  return vtk_type == tet || vtk_type == quad ? 4
+         : vtk_type == triangle              ? 3
+         : vtk_type == quadratic_tet         ? 10
+         : vtk_type == quadratic_triangle    ? 6
+                                             : 8;
 }
 
 class DeckReader {
@@ -64,7 +71,8 @@ class DeckReader {
     const std::size_t at = lower.find("label "), colon = lower.find(':');
     told_ = std::nullopt;
     if (at == std::string::npos || colon == std::string::npos || colon < at) return;
-    if (const auto number = to_integer(trimmed(text.substr(at + 6, colon - at - 6)))) told_ = {{*number, std::string(trimmed(text.substr(colon + 1)))}};
+    if (const auto number = to_integer(trimmed(text.substr(at + 6, colon - at - 6))))
+      told_ = {{*number, std::string(trimmed(text.substr(colon + 1)))}};
   }
 
   static std::string parameter(const std::string& line, std::string_view original, const std::string& name) {
@@ -87,7 +95,8 @@ class DeckReader {
     block_ = Block::none;
     if (word == "*include" || !parameter(line, text, "input").empty())
       in_.fail_plainly("the deck includes another file", "write the mesh as one file");
-    if (word == "*part" && ++parts_ > 1) in_.fail_plainly("the deck has several parts", "write it flat, without parts and instances");
+    if (word == "*part" && ++parts_ > 1)
+      in_.fail_plainly("the deck has several parts", "write it flat, without parts and instances");
     if (word == "*node") {
       block_ = Block::nodes;
     } else if (word == "*element") {
@@ -146,7 +155,8 @@ class DeckReader {
       p[k] = *v;
     }
     const std::int64_t id = whole(fields_[0], "node number");
-    if (!node_of_.emplace(id, static_cast<std::int64_t>(mesh_.points.size())).second) in_.fail("node " + std::to_string(id) + " is there twice");
+    if (!node_of_.emplace(id, static_cast<std::int64_t>(mesh_.points.size())).second)
+      in_.fail("node " + std::to_string(id) + " is there twice");
     mesh_.points.push_back({p[0], p[1], p[2]});
   }
 
@@ -180,7 +190,8 @@ class DeckReader {
   void member() {
     if (generate_) {
       if (fields_.size() < 2) in_.fail("a range of elements without its end");
-      const std::int64_t from = whole(fields_[0], "number of an element"), to = whole(fields_[1], "number of an element");
+      const std::int64_t from = whole(fields_[0], "number of an element"),
+                         to = whole(fields_[1], "number of an element");
       const std::int64_t step = fields_.size() > 2 && !fields_[2].empty() ? whole(fields_[2], "step") : 1;
       if (step < 1 || from > to) in_.fail("an odd range of elements");
       sets_[set_].ranges.push_back({from, to, step});
@@ -213,7 +224,8 @@ class DeckReader {
       const auto fill_one = [&](const DeckSet& s) {
         for (const auto& r : s.ranges) {
           const std::int64_t length = (r.to - r.from) / r.step + 1;
-          if (length > static_cast<std::int64_t>(2 * element_of_.size() + 16)) {  // a range with holes: look at what is there
+          // a range with holes: look at what is there
+          if (length > static_cast<std::int64_t>(2 * element_of_.size() + 16)) {
             for (const auto& [id, cell] : element_of_)
               if (id >= r.from && id <= r.to && (id - r.from) % r.step == 0) put(cell);
             continue;
@@ -247,7 +259,8 @@ class DeckReader {
       std::vector<std::int32_t> kept = of_cell;
       std::fill(of_cell.begin(), of_cell.end(), -1);
       for (std::size_t s = 0; s < sets_.size(); ++s)
-        if (lower_case(sets_[s].name) != "eall" && !(sets_[s].ranges.empty() && sets_[s].members.empty())) fill(static_cast<std::int32_t>(s), false);
+        if (lower_case(sets_[s].name) != "eall" && !(sets_[s].ranges.empty() && sets_[s].members.empty()))
+          fill(static_cast<std::int32_t>(s), false);
       for (std::size_t c = 0; c < of_cell.size(); ++c)
         if (of_cell[c] < 0) of_cell[c] = kept[c];
     }
@@ -287,7 +300,9 @@ class DeckReader {
 
 }  // namespace
 
-void read_inp(MeshBytes& in, RawMesh& mesh) { DeckReader(in, mesh).run(); }
+void read_inp(MeshBytes& in, RawMesh& mesh) {
+  DeckReader(in, mesh).run();
+}
 
 void read_medit(MeshBytes& in, RawMesh& mesh) {
   const std::string_view all = in.rest();
@@ -316,7 +331,8 @@ void read_medit(MeshBytes& in, RawMesh& mesh) {
       const std::size_t n = in.count(in.integer("a count of points", '#'), 7, "points");
       for (std::size_t i = 0; i < n; ++i) {
         Vec3 p;
-        p.x = in.number("a coordinate", '#'), p.y = in.number("a coordinate", '#'), p.z = in.number("a coordinate", '#');
+        p.x = in.number("a coordinate", '#'), p.y = in.number("a coordinate", '#'),
+        p.z = in.number("a coordinate", '#');
         in.integer("a reference", '#');
         mesh.points.push_back(p);
       }
@@ -332,7 +348,8 @@ void read_medit(MeshBytes& in, RawMesh& mesh) {
       cells(13, 6);
     } else if (key == "edges") {
       cells(vtk_cell::line, 2, true);
-    } else if (key == "corners" || key == "requiredvertices" || key == "ridges" || key == "requirededges" || key == "requiredtriangles") {
+    } else if (key == "corners" || key == "requiredvertices" || key == "ridges" || key == "requirededges" ||
+               key == "requiredtriangles") {
       const std::size_t n = in.count(in.integer("a count", '#'), 2, "entries");
       for (std::size_t i = 0; i < n; ++i) in.integer("an entry", '#');
     } else {

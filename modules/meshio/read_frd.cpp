@@ -32,7 +32,8 @@ class FrdReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    fail_input("the result file " + what, path_ + ", line " + std::to_string(number_), "let CalculiX write it again, as text (*NODE FILE, *EL FILE)");
+    fail_input("the result file " + what, path_ + ", line " + std::to_string(number_),
+               "let CalculiX write it again, as text (*NODE FILE, *EL FILE)");
   }
   bool next() {
     ++number_;
@@ -89,6 +90,8 @@ class FrdReader {
 
 }  // namespace
 
-FrdResult read_frd(const std::string& path) { return FrdReader(path).read(); }
+FrdResult read_frd(const std::string& path) {
+  return FrdReader(path).read();
+}
 
 }  // namespace stackmesh

@@ -14,9 +14,9 @@ struct ElementType {
 
 std::optional<ElementType> element_type(std::int64_t gmsh) {
   static const std::map<std::int64_t, ElementType> kTypes = {
-      {1, {2, 3}},    {2, {3, 5}},    {3, {4, 9}},    {4, {4, 10}},  {5, {8, 12}},  {6, {6, 13}},  {7, {5, 14}}, {8, {3, 21}},
-      {9, {6, 22}},   {10, {9, 23}},  {11, {10, 24}}, {12, {27, 29}}, {13, {18, 26}}, {14, {14, 27}}, {15, {1, 1}}, {16, {8, 23}},
-      {17, {20, 25}}, {18, {15, 26}}, {19, {13, 27}}};
+      {1, {2, 3}},  {2, {3, 5}},   {3, {4, 9}},    {4, {4, 10}},   {5, {8, 12}},   {6, {6, 13}},   {7, {5, 14}},
+      {8, {3, 21}}, {9, {6, 22}},  {10, {9, 23}},  {11, {10, 24}}, {12, {27, 29}}, {13, {18, 26}}, {14, {14, 27}},
+      {15, {1, 1}}, {16, {8, 23}}, {17, {20, 25}}, {18, {15, 26}}, {19, {13, 27}}};
   const auto it = kTypes.find(gmsh);
   if (it == kTypes.end()) return std::nullopt;
   return it->second;
@@ -53,7 +53,8 @@ class GmshReader {
     const double version = in_.number("a version");
     new_format_ = version >= 4;
     if (version != 2.2 && version != 2 && version != 2.1 && version != 4.1)
-      in_.fail_plainly("Gmsh format " + std::to_string(version).substr(0, 3) + " is not read", "write it as 2.2 or 4.1");
+      in_.fail_plainly("Gmsh format " + std::to_string(version).substr(0, 3) + " is not read",
+                       "write it as 2.2 or 4.1");
     binary_ = in_.integer("a file type") == 1;
     const std::int64_t size = in_.integer("a data size");
     if (size != 8) in_.fail("only a data size of 8 is read");
@@ -80,7 +81,8 @@ class GmshReader {
       std::string_view text;
       in_.line(text);
       text = trimmed(text);
-      if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.rfind('"') == 0 ? text.size() - 1 : text.rfind('"') - 1);
+      if (text.size() >= 2 && text.front() == '"')
+        text = text.substr(1, text.rfind('"') == 0 ? text.size() - 1 : text.rfind('"') - 1);
       mesh_.names.push_back({dimension, tag, std::string(text)});
     }
   }
@@ -88,14 +90,17 @@ class GmshReader {
   std::int64_t whole(Scalar type, const char* what) {
     return binary_ ? read_integer(in_.take(size_of(type), what).data(), type, swap_) : in_.integer(what);
   }
-  double real(const char* what) { return binary_ ? read_scalar(in_.take(8, what).data(), Scalar::f64, swap_) : in_.number(what); }
+  double real(const char* what) {
+    return binary_ ? read_scalar(in_.take(8, what).data(), Scalar::f64, swap_) : in_.number(what);
+  }
   std::size_t many(std::int64_t n, std::size_t text_bytes, std::size_t binary_bytes, const char* what) {
     return in_.count(n, binary_ ? binary_bytes : text_bytes, what);
   }
 
   void read_entities() {
     std::int64_t counts[4];
-    for (std::int64_t& c : counts) c = static_cast<std::int64_t>(many(whole(Scalar::u64, "entities"), 2, 4, "entities"));
+    for (std::int64_t& c : counts)
+      c = static_cast<std::int64_t>(many(whole(Scalar::u64, "entities"), 2, 4, "entities"));
     for (int dimension = 0; dimension < 4; ++dimension)
       for (std::int64_t i = 0; i < counts[dimension]; ++i) {
         const std::int64_t tag = whole(Scalar::i32, "entities");
@@ -119,7 +124,8 @@ class GmshReader {
   }
 
   void add_node(std::int64_t tag, const Vec3& p) {
-    if (!node_of_.emplace(tag, static_cast<std::int64_t>(mesh_.points.size())).second) in_.fail("node " + std::to_string(tag) + " is there twice");
+    if (!node_of_.emplace(tag, static_cast<std::int64_t>(mesh_.points.size())).second)
+      in_.fail("node " + std::to_string(tag) + " is there twice");
     mesh_.points.push_back(p);
   }
 
@@ -161,14 +167,16 @@ class GmshReader {
     end_block();
   }
 
-  void add_element(std::int64_t gmsh, const ElementType& type, const std::int64_t* nodes, std::int64_t physical, std::int64_t entity) {
+  void add_element(std::int64_t gmsh, const ElementType& type, const std::int64_t* nodes, std::int64_t physical,
+                   std::int64_t entity) {
     std::int64_t n[32] = {};
     for (int k = 0; k < type.nodes; ++k) {
       const auto it = node_of_.find(nodes[k]);
       n[k] = it == node_of_.end() ? -1 : it->second;
     }
     if (gmsh == 11) std::swap(n[8], n[9]);  // Gmsh's last two edges are 23 and 13
-    static constexpr int kWedge[15] = {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11};  // Gmsh sorts edges by their ends
+    // Gmsh sorts edges by their ends
+    static constexpr int kWedge[15] = {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11};
     static constexpr int kPyramid[13] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12};
     if (gmsh == 18 || gmsh == 19) {
       std::int64_t sorted[15];
@@ -182,7 +190,9 @@ class GmshReader {
 
   ElementType known(std::int64_t type) const {
     const std::optional<ElementType> t = element_type(type);
-    if (!t) in_.fail_plainly("elements of Gmsh type " + std::to_string(type) + " are not read", "write triangles and tetrahedra of first or second order");
+    if (!t)
+      in_.fail_plainly("elements of Gmsh type " + std::to_string(type) + " are not read",
+                       "write triangles and tetrahedra of first or second order");
     return *t;
   }
 
@@ -195,7 +205,8 @@ class GmshReader {
     while (done < n) {
       std::int64_t type = 0, block = 1, tag_count = 0;
       if (binary_) {
-        type = whole(Scalar::i32, "elements"), block = whole(Scalar::i32, "elements"), tag_count = whole(Scalar::i32, "elements");
+        type = whole(Scalar::i32, "elements"), block = whole(Scalar::i32, "elements"),
+        tag_count = whole(Scalar::i32, "elements");
         if (block < 1) in_.fail("an empty block of elements");
       } else {
         whole(Scalar::i32, "elements");
@@ -219,7 +230,8 @@ class GmshReader {
     for (int k = 0; k < 3; ++k) whole(Scalar::u64, "elements");
     std::int64_t nodes[32];
     for (std::size_t b = 0; b < blocks; ++b) {
-      const std::int64_t dimension = whole(Scalar::i32, "elements"), entity = whole(Scalar::i32, "elements"), type = whole(Scalar::i32, "elements");
+      const std::int64_t dimension = whole(Scalar::i32, "elements"), entity = whole(Scalar::i32, "elements"),
+                         type = whole(Scalar::i32, "elements");
       const ElementType known_type = known(type);
       const std::size_t n = many(whole(Scalar::u64, "elements"), 4, 16, "elements");
       if (dimension < 0 || dimension > 3) in_.fail("an element block of dimension " + std::to_string(dimension));
@@ -243,6 +255,8 @@ class GmshReader {
 
 }  // namespace
 
-void read_msh(MeshBytes& in, RawMesh& mesh) { GmshReader(in, mesh).run(); }
+void read_msh(MeshBytes& in, RawMesh& mesh) {
+  GmshReader(in, mesh).run();
+}
 
 }  // namespace stackmesh

@@ -21,8 +21,9 @@ struct Format {
   const char* name;
   Reader read;
 };
-constexpr Format kFormats[] = {{"stl", read_stl}, {"ply", read_ply},        {"obj", read_obj}, {"off", read_off}, {"vtp", read_vtk_xml},
-                               {"vtu", read_vtk_xml}, {"vtk", read_vtk_legacy}, {"msh", read_msh}, {"inp", read_inp}, {"mesh", read_medit}};
+constexpr Format kFormats[] = {
+    {"stl", read_stl},     {"ply", read_ply},        {"obj", read_obj}, {"off", read_off}, {"vtp", read_vtk_xml},
+    {"vtu", read_vtk_xml}, {"vtk", read_vtk_legacy}, {"msh", read_msh}, {"inp", read_inp}, {"mesh", read_medit}};
 
 const Format* format_of(const std::string& path) {
   const std::size_t dot = path.rfind('.');
@@ -71,7 +72,8 @@ class MeshFinisher {
     if (!is_volume()) take_surface();
     else take_volume();
     if (!out_.tets.empty() || !out_.wedges.empty()) return std::move(out_);
-    if (out_.triangles.empty()) fail_input("all triangles are degenerate or background", raw_.path, "give a surface or a volume mesh");
+    if (out_.triangles.empty())
+      fail_input("all triangles are degenerate or background", raw_.path, "give a surface or a volume mesh");
     return std::move(out_);
   }
 
@@ -81,21 +83,28 @@ class MeshFinisher {
   void check() const {
     for (const auto& [kind, count] : raw_.unsupported)
       fail_input("the mesh has " + std::to_string(count) + " " + kind, raw_.path,
-                 "triangles, quads, polygons, tetrahedra, wedges and pyramids of first or second order are judged: split the others into tetrahedra");
+                 "triangles, quads, polygons, tetrahedra, wedges and pyramids of first or second order are judged: "
+                 "split the others into tetrahedra");
     if (raw_.cells > 2000000000) fail_input("the mesh has more than 2,000,000,000 cells", raw_.path, "split it");
-    if (raw_.triangles.empty() && !is_volume()) fail_input("the mesh has no triangle and no tetrahedron", raw_.path, "give a surface or a volume mesh");
+    if (raw_.triangles.empty() && !is_volume())
+      fail_input("the mesh has no triangle and no tetrahedron", raw_.path, "give a surface or a volume mesh");
     for (std::size_t p = 0; p < raw_.points.size(); ++p) {
       const Vec3& v = raw_.points[p];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-        fail_input("a coordinate is not a finite number", raw_.path + ", point " + std::to_string(p), "mend the mesh where it was made");
+        fail_input("a coordinate is not a finite number", raw_.path + ", point " + std::to_string(p),
+                   "mend the mesh where it was made");
       if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e9)
-        fail_input("a coordinate lies beyond 1,000 km", raw_.path + ", point " + std::to_string(p), "give the mesh in mm");
+        fail_input("a coordinate lies beyond 1,000 km", raw_.path + ", point " + std::to_string(p),
+                   "give the mesh in mm");
     }
-    if (raw_.points.size() > 2000000000) fail_input("the mesh has more than 2,000,000,000 points", raw_.path, "split it");
+    if (raw_.points.size() > 2000000000)
+      fail_input("the mesh has more than 2,000,000,000 points", raw_.path, "split it");
     const auto need = [&](const char* kind, std::size_t i, std::int32_t v) {
       if (v < 0 || static_cast<std::size_t>(v) >= raw_.points.size())
-        fail_input(std::string("a ") + kind + " names a point that is not there", raw_.path + ", " + kind + " " + std::to_string(i) + ", of " +
-                   std::to_string(raw_.points.size()) + " points", kMend);
+        fail_input(std::string("a ") + kind + " names a point that is not there",
+                   raw_.path + ", " + kind + " " + std::to_string(i) + ", of " + std::to_string(raw_.points.size()) +
+                       " points",
+                   kMend);
     };
     for (std::size_t t = 0; t < raw_.triangles.size(); ++t)
       for (const std::int32_t v : raw_.triangles[t]) need("triangle", t, v);
@@ -108,11 +117,13 @@ class MeshFinisher {
     for (std::size_t w = 0; w < raw_.wedges.size(); ++w)
       for (const std::int32_t v : raw_.wedges[w]) need("wedge", w, v);
     for (std::size_t w = 0; w < raw_.wedge_midside.size(); ++w) {
-      if (raw_.wedge_midside[w][0] < 0 && raw_.wedge_midside[w][7] < 0) fail_input("elements of first and of second order are mixed", raw_.path, "write the mesh in one order");
+      if (raw_.wedge_midside[w][0] < 0 && raw_.wedge_midside[w][7] < 0)
+        fail_input("elements of first and of second order are mixed", raw_.path, "write the mesh in one order");
       for (const std::int32_t v : raw_.wedge_midside[w]) need("wedge", w, v);
     }
     for (std::size_t t = 0; t < raw_.midside.size(); ++t) {
-      if (raw_.midside[t][0] < 0 && raw_.midside[t][5] < 0) fail_input("tetrahedra of 4 and of 10 nodes are mixed", raw_.path, "write the mesh in one order");
+      if (raw_.midside[t][0] < 0 && raw_.midside[t][5] < 0)
+        fail_input("tetrahedra of 4 and of 10 nodes are mixed", raw_.path, "write the mesh in one order");
       for (const std::int32_t v : raw_.midside[t]) need("tet", t, v);
     }
   }
@@ -148,12 +159,13 @@ class MeshFinisher {
       if (!labels_) {
         std::string known;
         for (const RawMesh::Array& a : raw_.arrays) known += (known.empty() ? "" : ", ") + a.name;
-        fail_input("the mesh has no cell array '" + o_.label_array + "'", raw_.path, known.empty() ? "it has none: leave --label-array out" : "it has " + known);
+        fail_input("the mesh has no cell array '" + o_.label_array + "'", raw_.path,
+                   known.empty() ? "it has none: leave --label-array out" : "it has " + known);
       }
     } else {
       below_ = array("labelbelow"), above_ = array("labelabove");
-      for (const char* name : {"label", "labels", "material", "materialid", "materialids", "medit:ref", "gmsh:physical", "gmsh:geometrical", "region",
-                               "regionid", "cellentityids", "part", "partid"}) {
+      for (const char* name : {"label", "labels", "material", "materialid", "materialids", "medit:ref", "gmsh:physical",
+                               "gmsh:geometrical", "region", "regionid", "cellentityids", "part", "partid"}) {
         labels_ = array(name);
         if (labels_ && !all_zero(*labels_)) break;
         labels_ = nullptr;
@@ -163,7 +175,8 @@ class MeshFinisher {
       out_.label_source = LabelSource::array;
       out_.label_array = labels_->name;
       for (const RawMesh::Name& n : raw_.names)
-        if (n.dimension == (is_volume() ? 3 : 2) && labels_->name == "gmsh:physical" && n.number >= -2147483647 && n.number <= 2147483647)
+        if (n.dimension == (is_volume() ? 3 : 2) && labels_->name == "gmsh:physical" && n.number >= -2147483647 &&
+            n.number <= 2147483647)
           out_.names.push_back({static_cast<Label>(n.number), n.text});
       sort_names();
     } else if (std::any_of(raw_.set_of_cell.begin(), raw_.set_of_cell.end(), [](std::int32_t s) { return s >= 0; })) {
@@ -172,15 +185,19 @@ class MeshFinisher {
   }
 
   void sort_names() {
-    std::sort(out_.names.begin(), out_.names.end(), [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
-    out_.names.erase(std::unique(out_.names.begin(), out_.names.end(), [](const LabelInfo& a, const LabelInfo& b) { return a.number == b.number; }), out_.names.end());
+    std::sort(out_.names.begin(), out_.names.end(),
+              [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
+    out_.names.erase(std::unique(out_.names.begin(), out_.names.end(),
+                                 [](const LabelInfo& a, const LabelInfo& b) { return a.number == b.number; }),
+                     out_.names.end());
   }
 
   static Label to_label(double value, const std::string& name, const std::string& path) {
     if (!(std::abs(value) <= 2147483647.0) || value != std::floor(value)) {
       char text[32];
       std::snprintf(text, sizeof text, "%g", value);
-      fail_input("the label array '" + name + "' holds " + text + ", not a whole number", path, "name another array with --label-array");
+      fail_input("the label array '" + name + "' holds " + text + ", not a whole number", path,
+                 "name another array with --label-array");
     }
     return static_cast<Label>(value);
   }
@@ -208,7 +225,9 @@ class MeshFinisher {
     std::vector<std::string> waiting;
     const auto want = [&](const std::string& name, std::optional<std::int64_t> told) {
       if (number.count(name)) return;
-      std::optional<Label> n = told && *told >= 0 && *told <= 2147483647 ? std::optional<Label>(static_cast<Label>(*told)) : number_in_name(name);
+      std::optional<Label> n = told && *told >= 0 && *told <= 2147483647
+                                   ? std::optional<Label>(static_cast<Label>(*told))
+                                   : number_in_name(name);
       if (n && *n != 0 && !taken.insert(*n).second) n = std::nullopt;
       if (n) number[name] = *n;
       else waiting.push_back(name), number[name] = -1;
@@ -216,7 +235,8 @@ class MeshFinisher {
     set_below_.assign(raw_.sets.size(), 0), set_above_.assign(raw_.sets.size(), 0);
     const auto parts_of = [](const RawMesh::Set& s) {
       const std::size_t bar = s.name.find('|');
-      return bar == std::string::npos ? std::make_pair(s.name, std::string("background")) : std::make_pair(s.name.substr(0, bar), s.name.substr(bar + 1));
+      return bar == std::string::npos ? std::make_pair(s.name, std::string("background"))
+                                      : std::make_pair(s.name.substr(0, bar), s.name.substr(bar + 1));
     };
     for (std::size_t s = 0; s < raw_.sets.size(); ++s) {
       if (!used[s]) continue;
@@ -249,18 +269,21 @@ class MeshFinisher {
 
   Label label_of_cell(std::int32_t cell) const {
     if (labels_) return to_label(labels_->values[cell], labels_->name, raw_.path);
-    if (out_.label_source == LabelSource::sets) return raw_.set_of_cell[cell] < 0 ? unnamed_ : set_below_[raw_.set_of_cell[cell]];
+    if (out_.label_source == LabelSource::sets)
+      return raw_.set_of_cell[cell] < 0 ? unnamed_ : set_below_[raw_.set_of_cell[cell]];
     return 1;
   }
 
   std::pair<Label, Label> sides_of_cell(std::int32_t cell) const {
-    return {to_label(below_->values[cell], below_->name, raw_.path), to_label(above_->values[cell], above_->name, raw_.path)};
+    return {to_label(below_->values[cell], below_->name, raw_.path),
+            to_label(above_->values[cell], above_->name, raw_.path)};
   }
 
   // ---- cells
 
   void note_conversions() {
-    if (raw_.polygons > 0) out_.notes.push_back(std::to_string(raw_.polygons) + " quads or polygons were split into triangles");
+    if (raw_.polygons > 0)
+      out_.notes.push_back(std::to_string(raw_.polygons) + " quads or polygons were split into triangles");
     if (raw_.strips > 0) out_.notes.push_back(std::to_string(raw_.strips) + " triangle strips were taken apart");
     if (raw_.quadratic_triangles > 0) out_.notes.push_back("triangles of 6 nodes are judged by their corners");
   }
@@ -290,8 +313,10 @@ class MeshFinisher {
     if (background > 0) {
       const bool wedges = !mesh.wedges.empty();
       relabel(mesh, [](Label l) { return l; });
-      out_.notes.push_back(std::to_string(background) + (wedges ? " elements" : " tets") + " of label 0 are background and left out");
-      if (mesh.elements() == 0) fail_input("all tetrahedra have label 0, the background", raw_.path, "name another array with --label-array");
+      out_.notes.push_back(std::to_string(background) + (wedges ? " elements" : " tets") +
+                           " of label 0 are background and left out");
+      if (mesh.elements() == 0)
+        fail_input("all tetrahedra have label 0, the background", raw_.path, "name another array with --label-array");
     }
     out_.tets = std::move(mesh.tets);
     out_.midside = std::move(mesh.mid);
@@ -325,7 +350,8 @@ class MeshFinisher {
         std::tie(triangle.below, triangle.above) = sides_of_cell(cell);
       } else {
         triangle.below = label_of_cell(cell);
-        if (out_.label_source == LabelSource::sets && raw_.set_of_cell[cell] >= 0) triangle.above = set_above_[raw_.set_of_cell[cell]];
+        if (out_.label_source == LabelSource::sets && raw_.set_of_cell[cell] >= 0)
+          triangle.above = set_above_[raw_.set_of_cell[cell]];
       }
       out_.triangles.push_back(triangle);
     }
@@ -353,7 +379,8 @@ class MeshFinisher {
       h = (h ^ (h >> 32) ^ bits[2]) * 0x94d049bb133111ebu;
       h ^= h >> 31;
       std::size_t at = h & (size - 1);
-      while (table[at] >= 0 && !(kept[table[at]].x == p.x && kept[table[at]].y == p.y && kept[table[at]].z == p.z)) at = (at + 1) & (size - 1);
+      while (table[at] >= 0 && !(kept[table[at]].x == p.x && kept[table[at]].y == p.y && kept[table[at]].z == p.z))
+        at = (at + 1) & (size - 1);
       if (table[at] < 0) {
         table[at] = static_cast<std::int32_t>(kept.size());
         kept.push_back(p);
@@ -365,15 +392,22 @@ class MeshFinisher {
     out_.points = std::move(kept);
     for (InterfaceTriangle& t : out_.triangles)
       for (std::int32_t& v : t.v) v = number[v];
-    if (out_.format != "stl") out_.notes.push_back(std::to_string(out_.merged_points) + " points that lie exactly on another were joined to it");
+    if (out_.format != "stl")
+      out_.notes.push_back(std::to_string(out_.merged_points) +
+                           " points that lie exactly on another were joined to it");
   }
 
   void drop_degenerate() {
-    const auto bad = [](const InterfaceTriangle& t) { return t.v[0] == t.v[1] || t.v[1] == t.v[2] || t.v[2] == t.v[0] || t.below == t.above; };
+    const auto bad = [](const InterfaceTriangle& t) {
+      return t.v[0] == t.v[1] || t.v[1] == t.v[2] || t.v[2] == t.v[0] || t.below == t.above;
+    };
     const std::size_t before = out_.triangles.size();
     out_.triangles.erase(std::remove_if(out_.triangles.begin(), out_.triangles.end(), bad), out_.triangles.end());
     out_.dropped_triangles = before - out_.triangles.size();
-    if (out_.dropped_triangles > 0) out_.notes.push_back(std::to_string(out_.dropped_triangles) + " triangles with a point twice, or with one label on both sides, were left out: they bound nothing");
+    if (out_.dropped_triangles > 0)
+      out_.notes.push_back(
+          std::to_string(out_.dropped_triangles) +
+          " triangles with a point twice, or with one label on both sides, were left out: they bound nothing");
   }
 
   /// Two labels that each bring the triangle between them, turned against each other, share one interface.
@@ -386,12 +420,15 @@ class MeshFinisher {
       key[t] = out_.triangles[t].v;
       std::sort(key[t].begin(), key[t].end());
     }
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return key[a] != key[b] ? key[a] < key[b] : a < b; });
+    std::sort(order.begin(), order.end(),
+              [&](std::int32_t a, std::int32_t b) { return key[a] != key[b] ? key[a] < key[b] : a < b; });
     std::vector<char> gone(order.size(), 0);
     std::size_t joined = 0;
     for (std::size_t i = 0; i + 1 < order.size(); ++i) {
       InterfaceTriangle &a = out_.triangles[order[i]], &b = out_.triangles[order[i + 1]];
-      if (key[order[i]] != key[order[i + 1]] || gone[order[i]] || a.above != 0 || b.above != 0 || a.below == b.below || runs_alike(a.v, b.v)) continue;
+      if (key[order[i]] != key[order[i + 1]] || gone[order[i]] || a.above != 0 || b.above != 0 || a.below == b.below ||
+          runs_alike(a.v, b.v))
+        continue;
       a.above = b.below;
       gone[order[i + 1]] = 1;
       ++joined;
@@ -420,11 +457,14 @@ class MeshFinisher {
 
 }  // namespace
 
-bool is_readable_mesh(const std::string& path) { return format_of(path) != nullptr; }
+bool is_readable_mesh(const std::string& path) {
+  return format_of(path) != nullptr;
+}
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options) {
   const Format* format = format_of(path);
-  if (!format) fail_input("the ending of the mesh is unknown", path, "give .stl .ply .obj .off .vtp .vtk .vtu .msh .inp or .mesh");
+  if (!format)
+    fail_input("the ending of the mesh is unknown", path, "give .stl .ply .obj .off .vtp .vtk .vtu .msh .inp or .mesh");
   RawMesh raw;
   raw.path = path;
   raw.format = format->name;

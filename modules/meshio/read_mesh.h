@@ -28,20 +28,22 @@ struct MeshFile {
   /// Surface triangles. Of a file without tets: the normal points from `below` into `above`. Of a file with
   /// tets: only those that carry both labels; all others are left out, as the tets' faces tell more.
   std::vector<InterfaceTriangle> triangles;
-  std::vector<Label> behind;  ///< of a file with tets, per triangle: a label that it names and no tet has (a void), taken for background; 0: none
+  /// of a file with tets, per triangle: a label that it names and no tet has (a void), taken for background; 0: none
+  std::vector<Label> behind;
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on kTetEdges; empty: linear
-  std::vector<std::array<std::int32_t, 6>> wedges;         ///< and pyramids, as TetMesh has them
-  std::vector<std::array<std::int32_t, 9>> wedge_midside;  ///< of 15-node wedges and 13-node pyramids, on kWedgeEdges; empty: linear
-  std::vector<Label> tet_labels;                     ///< one per element: tets, then wedges
-  std::vector<LabelInfo> names;                      ///< of labels the file names, ascending by number
+  std::vector<std::array<std::int32_t, 6>> wedges;   ///< and pyramids, as TetMesh has them
+  /// of 15-node wedges and 13-node pyramids, on kWedgeEdges; empty: linear
+  std::vector<std::array<std::int32_t, 9>> wedge_midside;
+  std::vector<Label> tet_labels;  ///< one per element: tets, then wedges
+  std::vector<LabelInfo> names;   ///< of labels the file names, ascending by number
   LabelSource label_source = LabelSource::none;
-  std::string label_array;                ///< name of the array the labels were read from, "" for none
-  bool numbers_from_names = false;        ///< of sets: some number was only counted up; the name is what counts
-  std::optional<Space> space;             ///< the frame that the file says it is in
-  std::size_t merged_points = 0;          ///< exactly equal points that were made one (surfaces only)
-  std::size_t dropped_triangles = 0;      ///< triangles that name a point twice (they bound nothing)
-  std::vector<std::string> notes;         ///< what was converted or left out, for a report
+  std::string label_array;            ///< name of the array the labels were read from, "" for none
+  bool numbers_from_names = false;    ///< of sets: some number was only counted up; the name is what counts
+  std::optional<Space> space;         ///< the frame that the file says it is in
+  std::size_t merged_points = 0;      ///< exactly equal points that were made one (surfaces only)
+  std::size_t dropped_triangles = 0;  ///< triangles that name a point twice (they bound nothing)
+  std::vector<std::string> notes;     ///< what was converted or left out, for a report
 };
 
 struct MeshReadOptions {
@@ -53,13 +55,13 @@ struct MeshReadOptions {
 /// True for .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh, in any letter case.
 bool is_readable_mesh(const std::string& path);
 
-/// Reads triangles, tetrahedra, wedges and pyramids (linear or with mid-side nodes; quads and polygons become triangles, said in `notes`)
-/// from a mesh file of any program; the format is that of the ending. STL: binary and text; PLY: binary and
-/// text; VTP, VTU: text, base64 and raw, appended or not, also zlib-compressed; VTK: legacy 2.0 to 5.1, text and binary; MSH: Gmsh 2.2
-/// and 4.1, text and binary; INP: Abaqus and CalculiX; MESH: Medit text. Memory is bounded by the size of the
-/// file, whatever its header claims. @throws Error(input) in one clear line for anything that cannot be read
-/// or is not a finite number, a mesh without triangles, hexahedra and other cells, labels that are not whole
-/// numbers.
+/// Reads triangles, tetrahedra, wedges and pyramids (linear or with mid-side nodes; quads and polygons become
+/// triangles, said in `notes`) from a mesh file of any program; the format is that of the ending. STL: binary and text;
+/// PLY: binary and text; VTP, VTU: text, base64 and raw, appended or not, also zlib-compressed; VTK: legacy 2.0 to 5.1,
+/// text and binary; MSH: Gmsh 2.2 and 4.1, text and binary; INP: Abaqus and CalculiX; MESH: Medit text. Memory is
+/// bounded by the size of the file, whatever its header claims. @throws Error(input) in one clear line for anything
+/// that cannot be read or is not a finite number, a mesh without triangles, hexahedra and other cells, labels that are
+/// not whole numbers.
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
 /// Moves points and elements (with labels and mid-side nodes) out of a file; its triangles and its space stay there.

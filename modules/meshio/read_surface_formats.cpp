@@ -19,7 +19,8 @@ void read_binary_stl(MeshBytes& in, RawMesh& mesh, std::uint32_t count) {
     for (std::int64_t& corner : corners) {
       corner = static_cast<std::int64_t>(mesh.points.size());
       Vec3 p;
-      p.x = read_scalar(bytes, Scalar::f32, false), p.y = read_scalar(bytes + 4, Scalar::f32, false), p.z = read_scalar(bytes + 8, Scalar::f32, false);
+      p.x = read_scalar(bytes, Scalar::f32, false), p.y = read_scalar(bytes + 4, Scalar::f32, false),
+      p.z = read_scalar(bytes + 8, Scalar::f32, false);
       mesh.points.push_back(p);
       bytes += 12;
     }
@@ -87,8 +88,10 @@ class PlyReader {
     bool vertices = false;
     for (const PlyElement& e : elements_) {
       std::size_t least = 0;
-      for (const PlyProperty& p : e.properties) least += text_ ? 2 : p.count_type ? size_of(*p.count_type) : size_of(p.type);
-      const std::size_t count = in_.count(e.count, std::max<std::size_t>(1, least) - (text_ ? 1 : 0), "'" + e.name + "'");
+      for (const PlyProperty& p : e.properties)
+        least += text_ ? 2 : p.count_type ? size_of(*p.count_type) : size_of(p.type);
+      const std::size_t count =
+          in_.count(e.count, std::max<std::size_t>(1, least) - (text_ ? 1 : 0), "'" + e.name + "'");
       if (e.name == "vertex") vertices = true, read_vertices(e, count);
       else if (e.name == "face") read_faces(e, count);
       else skip(e, count);
@@ -238,20 +241,24 @@ std::optional<std::int64_t> label_of_name(std::string_view name) {
 void read_stl(MeshBytes& in, RawMesh& mesh) {
   const std::string_view all = in.rest();
   const bool has_header = all.size() >= kStlHeader;
-  const std::uint32_t count = has_header ? static_cast<std::uint32_t>(read_integer(all.data() + 80, Scalar::u32, false)) : 0;
+  const std::uint32_t count =
+      has_header ? static_cast<std::uint32_t>(read_integer(all.data() + 80, Scalar::u32, false)) : 0;
   const std::uint64_t size = kStlHeader + kStlTriangle * static_cast<std::uint64_t>(count);
   const std::string head = lower_case(all.substr(0, 4096));
-  const bool text = trimmed(head).substr(0, 5) == "solid" && (head.find("facet") != std::string::npos || head.find("endsolid") != std::string::npos);
+  const bool text = trimmed(head).substr(0, 5) == "solid" &&
+                    (head.find("facet") != std::string::npos || head.find("endsolid") != std::string::npos);
   if (!has_header && !text) in.fail("the file is too short for an STL");
   if (text && size != all.size()) return read_text_stl(in, mesh);
   if (size > all.size())
-    in.fail_plainly("the header claims " + std::to_string(count) + " triangles (" + std::to_string(size) + " bytes), the file has " +
-                        std::to_string(all.size()) + " bytes",
+    in.fail_plainly("the header claims " + std::to_string(count) + " triangles (" + std::to_string(size) +
+                        " bytes), the file has " + std::to_string(all.size()) + " bytes",
                     "write or copy the file again");
   read_binary_stl(in, mesh, count);
 }
 
-void read_ply(MeshBytes& in, RawMesh& mesh) { PlyReader(in, mesh).run(); }
+void read_ply(MeshBytes& in, RawMesh& mesh) {
+  PlyReader(in, mesh).run();
+}
 
 void read_obj(MeshBytes& in, RawMesh& mesh) {
   std::string_view text;
@@ -310,8 +317,10 @@ void read_off(MeshBytes& in, RawMesh& mesh) {
   std::string_view text;
   std::string_view head = in.word('#');
   const std::string kind = lower_case(head);
-  if (kind.size() < 3 || kind.substr(kind.size() - 3) != "off" || kind.find("4") != std::string::npos || kind.find("n") == 0)
-    in.fail(kind.size() >= 3 && kind.substr(kind.size() - 3) == "off" ? "only OFF, COFF and STOFF are read" : "the file does not begin with 'OFF'");
+  if (kind.size() < 3 || kind.substr(kind.size() - 3) != "off" || kind.find("4") != std::string::npos ||
+      kind.find("n") == 0)
+    in.fail(kind.size() >= 3 && kind.substr(kind.size() - 3) == "off" ? "only OFF, COFF and STOFF are read"
+                                                                      : "the file does not begin with 'OFF'");
   const auto next_line = [&](const char* what) {
     do {
       if (!in.line(text)) in.fail(std::string("the file ends within its ") + what);

@@ -14,7 +14,8 @@ class LegacyReader {
   void run() {
     std::string_view text;
     in_.line(text);
-    if (lower_case(text).rfind("# vtk datafile version", 0) != 0) in_.fail("the file does not begin with '# vtk DataFile Version'");
+    if (lower_case(text).rfind("# vtk datafile version", 0) != 0)
+      in_.fail("the file does not begin with '# vtk DataFile Version'");
     const auto version = to_number(trimmed(text.substr(22)));
     offsets_ = version && *version >= 5;
     if (!in_.line(text)) in_.fail("the file has no title");
@@ -25,7 +26,8 @@ class LegacyReader {
     if (lower_case(in_.word()) != "dataset") in_.fail("no DATASET");
     const std::string dataset = lower_case(in_.word());
     if (dataset != "polydata" && dataset != "unstructured_grid")
-      in_.fail_plainly("the file holds " + dataset + ", not POLYDATA or UNSTRUCTURED_GRID", "write the mesh as one of these");
+      in_.fail_plainly("the file holds " + dataset + ", not POLYDATA or UNSTRUCTURED_GRID",
+                       "write the mesh as one of these");
     for (std::string key = lower_case(in_.word()); !key.empty(); key = lower_case(in_.word())) section(key);
     emit();
   }
@@ -152,13 +154,16 @@ class LegacyReader {
       }
       return c;
     }
-    const std::size_t n = in_.count(first, text_ ? 2 : 4, "cells"), total = in_.count(second, text_ ? 1 : 4, "cell numbers");
+    const std::size_t n = in_.count(first, text_ ? 2 : 4, "cells"),
+                      total = in_.count(second, text_ ? 1 : 4, "cell numbers");
     const std::vector<std::int64_t> v = wholes(total, Scalar::i32, "cells");
     std::size_t at = 0;
     c.nodes.reserve(total);
     for (std::size_t i = 0; i < n; ++i) {
-      if (at >= total || v[at] < 0 || static_cast<std::uint64_t>(v[at]) > total - at - 1) in_.fail("cell " + std::to_string(i) + " has more nodes than are there");
-      c.nodes.insert(c.nodes.end(), v.begin() + static_cast<std::ptrdiff_t>(at) + 1, v.begin() + static_cast<std::ptrdiff_t>(at + 1) + v[at]);
+      if (at >= total || v[at] < 0 || static_cast<std::uint64_t>(v[at]) > total - at - 1)
+        in_.fail("cell " + std::to_string(i) + " has more nodes than are there");
+      c.nodes.insert(c.nodes.end(), v.begin() + static_cast<std::ptrdiff_t>(at) + 1,
+                     v.begin() + static_cast<std::ptrdiff_t>(at + 1) + v[at]);
       at += 1 + static_cast<std::size_t>(v[at]);
       c.ends.push_back(static_cast<std::int64_t>(c.nodes.size()));
     }
@@ -290,6 +295,8 @@ class LegacyReader {
 
 }  // namespace
 
-void read_vtk_legacy(MeshBytes& in, RawMesh& mesh) { LegacyReader(in, mesh).run(); }
+void read_vtk_legacy(MeshBytes& in, RawMesh& mesh) {
+  LegacyReader(in, mesh).run();
+}
 
 }  // namespace stackmesh

@@ -16,11 +16,13 @@ struct Values {
   std::string bytes;
   Scalar type = Scalar::f64;
   bool swap = false;
-  std::vector<double> numbers;        // of text
-  std::vector<std::int64_t> wholes;   // of text of a whole-number type
+  std::vector<double> numbers;       // of text
+  std::vector<std::int64_t> wholes;  // of text of a whole-number type
   bool text = false;
 
-  std::size_t size() const { return !text ? bytes.size() / size_of(type) : numbers.empty() ? wholes.size() : numbers.size(); }
+  std::size_t size() const {
+    return !text ? bytes.size() / size_of(type) : numbers.empty() ? wholes.size() : numbers.size();
+  }
   double number(std::size_t i) const {
     if (text) return numbers.empty() ? static_cast<double>(wholes[i]) : numbers[i];
     return read_scalar(bytes.data() + i * size_of(type), type, swap);
@@ -87,8 +89,9 @@ class XmlReader {
       in_.fail_plainly("the arrays are compressed with " + compressor, "write it with zlib or without compression");
     const bool surface = file.child("PolyData"), grid = file.child("UnstructuredGrid");
     if (!surface && !grid)
-      in_.fail_plainly("the file holds '" + std::string(file.attribute("type").value()) + "', not PolyData or an UnstructuredGrid",
-                       "write the mesh as one of these");
+      in_.fail_plainly(
+          "the file holds '" + std::string(file.attribute("type").value()) + "', not PolyData or an UnstructuredGrid",
+          "write the mesh as one of these");
     const pugi::xml_node data = file.child(surface ? "PolyData" : "UnstructuredGrid");
     read_space(data);
     int pieces = 0;
@@ -115,9 +118,12 @@ class XmlReader {
       head = std::string(all.substr(0, cut)) + "</VTKFile>";
       text = head;
     }
-    const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_comments);
-    if (!result) in_.fail_plainly(std::string("the XML cannot be read (") + result.description() + ", byte " + std::to_string(result.offset) + ")",
-                                  "write or copy the file again");
+    const pugi::xml_parse_result result =
+        document_.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_comments);
+    if (!result)
+      in_.fail_plainly(std::string("the XML cannot be read (") + result.description() + ", byte " +
+                           std::to_string(result.offset) + ")",
+                       "write or copy the file again");
     for (const pugi::xml_node node : document_.child("VTKFile").first_child().children())
       if (node.type() == pugi::node_comment) mesh_.note_space(node.value());
   }
@@ -150,15 +156,18 @@ class XmlReader {
     const std::size_t word = wide_header_ ? 8 : 4;
     std::size_t at = 0;
     const auto fetch = [&](std::uint64_t size, std::size_t& from) {
-      if (size > source.size()) in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
+      if (size > source.size())
+        in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
       std::string bytes;
       if (raw) {
-        if (size > source.size() - std::min(from, source.size())) in_.fail_plainly("the file ends within array '" + name + "'", "write or copy the file again");
+        if (size > source.size() - std::min(from, source.size()))
+          in_.fail_plainly("the file ends within array '" + name + "'", "write or copy the file again");
         bytes = source.substr(from, size);
         from += size;
       } else {
         bytes = decode_base64(source, from, size);
-        if (bytes.size() < size) in_.fail_plainly("the file ends within array '" + name + "'", "write or copy the file again");
+        if (bytes.size() < size)
+          in_.fail_plainly("the file ends within array '" + name + "'", "write or copy the file again");
       }
       return bytes;
     };
@@ -171,7 +180,8 @@ class XmlReader {
       std::size_t begin = 0;
       const std::string header = fetch(word, begin);
       const std::uint64_t size = header_number(header, 0);
-      if (size > source.size()) in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
+      if (size > source.size())
+        in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
       if (begin > 0 && source[begin - 1] == '=') {  // or two, each padded
         std::string bytes = fetch(size, begin);
         bytes.resize(size);
@@ -185,13 +195,15 @@ class XmlReader {
     std::size_t begin = 0;
     const std::string counts = fetch(word, begin);
     const std::uint64_t blocks = header_number(counts, 0);
-    if (blocks > source.size()) in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
+    if (blocks > source.size())
+      in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
     const std::string header = fetch(word * (3 + blocks), at);
     const std::uint64_t block_size = header_number(header, 1), last_size = header_number(header, 2);
     std::uint64_t packed = 0;
     for (std::uint64_t b = 0; b < blocks; ++b) {
       const std::uint64_t size = header_number(header, 3 + b);
-      if (size > source.size() || packed > source.size()) in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
+      if (size > source.size() || packed > source.size())
+        in_.fail_plainly("array '" + name + "' claims more bytes than the file has", "write or copy the file again");
       packed += size;
     }
     const std::string data = fetch(packed, at);
@@ -200,11 +212,14 @@ class XmlReader {
     for (std::uint64_t b = 0; b < blocks; ++b) {
       const std::uint64_t size = header_number(header, 3 + b);
       const std::uint64_t plain = b + 1 == blocks && last_size > 0 ? last_size : block_size;
-      if (plain / 1032 > size + 64) in_.fail_plainly("array '" + name + "' claims more than zlib can hold", "write or copy the file again");
+      if (plain / 1032 > size + 64)
+        in_.fail_plainly("array '" + name + "' claims more than zlib can hold", "write or copy the file again");
       const std::size_t old = bytes.size();
       bytes.resize(old + plain);
       uLongf got = static_cast<uLongf>(plain);
-      if (uncompress(reinterpret_cast<Bytef*>(&bytes[old]), &got, reinterpret_cast<const Bytef*>(from), static_cast<uLong>(size)) != Z_OK || got != plain)
+      if (uncompress(reinterpret_cast<Bytef*>(&bytes[old]), &got, reinterpret_cast<const Bytef*>(from),
+                     static_cast<uLong>(size)) != Z_OK ||
+          got != plain)
         in_.fail_plainly("the compressed array '" + name + "' is broken", "write or copy the file again");
       from += size;
     }
@@ -218,7 +233,8 @@ class XmlReader {
     const std::string_view format = array.attribute("format").value();
     if (format == "appended") {
       const std::uint64_t offset = array.attribute("offset").as_ullong();
-      if (offset >= appended_.size()) in_.fail_plainly("the appended data end before array '" + name + "'", "write or copy the file again");
+      if (offset >= appended_.size())
+        in_.fail_plainly("the appended data end before array '" + name + "'", "write or copy the file again");
       v.bytes = decode(appended_.substr(offset), appended_raw_, name);
       return v;
     }
@@ -266,9 +282,12 @@ class XmlReader {
     const Values v = read_array(array, "Points");
     const std::int64_t claimed = piece.attribute("NumberOfPoints").as_llong(-1);
     if (claimed < 0 || v.size() % 3 != 0 || static_cast<std::uint64_t>(claimed) != v.size() / 3)
-      in_.fail_plainly("the file claims " + std::to_string(claimed) + " points, but holds " + std::to_string(v.size() / 3), "write or copy the file again");
+      in_.fail_plainly(
+          "the file claims " + std::to_string(claimed) + " points, but holds " + std::to_string(v.size() / 3),
+          "write or copy the file again");
     mesh_.points.reserve(mesh_.points.size() + v.size() / 3);
-    for (std::size_t i = 0; i + 2 < v.size(); i += 3) mesh_.points.push_back({v.number(i), v.number(i + 1), v.number(i + 2)});
+    for (std::size_t i = 0; i + 2 < v.size(); i += 3)
+      mesh_.points.push_back({v.number(i), v.number(i + 1), v.number(i + 2)});
     return first;
   }
 
@@ -276,15 +295,19 @@ class XmlReader {
   template <class TypeOf>
   void read_cells(const pugi::xml_node& cells, std::int64_t first, std::int64_t claimed, TypeOf type_of) {
     if (claimed == 0) return;
-    const Values nodes = read_array(named(cells, "connectivity"), "connectivity"), ends = read_array(named(cells, "offsets"), "offsets");
+    const Values nodes = read_array(named(cells, "connectivity"), "connectivity"),
+                 ends = read_array(named(cells, "offsets"), "offsets");
     if (claimed < 0 || static_cast<std::uint64_t>(claimed) != ends.size())
-      in_.fail_plainly("the file claims " + std::to_string(claimed) + " cells, but holds " + std::to_string(ends.size()), "write or copy the file again");
+      in_.fail_plainly(
+          "the file claims " + std::to_string(claimed) + " cells, but holds " + std::to_string(ends.size()),
+          "write or copy the file again");
     std::vector<std::int64_t> cell;
     std::int64_t begin = 0;
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const std::int64_t end = ends.whole(i);
       if (end < begin || static_cast<std::uint64_t>(end) > nodes.size())
-        in_.fail_plainly("cell " + std::to_string(i) + " lies outside the connectivity", "write or copy the file again");
+        in_.fail_plainly("cell " + std::to_string(i) + " lies outside the connectivity",
+                         "write or copy the file again");
       cell.clear();
       for (std::int64_t k = begin; k < end; ++k) {
         const std::int64_t node = nodes.whole(static_cast<std::size_t>(k));
@@ -298,10 +321,14 @@ class XmlReader {
   void read_surface(const pugi::xml_node& piece) {
     const std::int64_t first = read_points(piece), first_cell = mesh_.cells;
     // Cell data count vertices and lines too, first.
-    mesh_.cells += std::max<std::int64_t>(0, piece.attribute("NumberOfVerts").as_llong()) + std::max<std::int64_t>(0, piece.attribute("NumberOfLines").as_llong());
-    if (mesh_.cells > first_cell + static_cast<std::int64_t>(in_.left())) in_.fail("the file claims more cells than it can hold");
-    read_cells(piece.child("Polys"), first, piece.attribute("NumberOfPolys").as_llong(), [](std::size_t) { return vtk_cell::polygon; });
-    read_cells(piece.child("Strips"), first, piece.attribute("NumberOfStrips").as_llong(), [](std::size_t) { return vtk_cell::strip; });
+    mesh_.cells += std::max<std::int64_t>(0, piece.attribute("NumberOfVerts").as_llong()) +
+                   std::max<std::int64_t>(0, piece.attribute("NumberOfLines").as_llong());
+    if (mesh_.cells > first_cell + static_cast<std::int64_t>(in_.left()))
+      in_.fail("the file claims more cells than it can hold");
+    read_cells(piece.child("Polys"), first, piece.attribute("NumberOfPolys").as_llong(),
+               [](std::size_t) { return vtk_cell::polygon; });
+    read_cells(piece.child("Strips"), first, piece.attribute("NumberOfStrips").as_llong(),
+               [](std::size_t) { return vtk_cell::strip; });
     read_cell_data(piece, first_cell);
   }
 
@@ -321,12 +348,15 @@ class XmlReader {
   void read_cell_data(const pugi::xml_node& piece, std::int64_t first_cell) {
     for (const pugi::xml_node array : piece.child("CellData").children("DataArray")) {
       const std::string name = array.attribute("Name").value();
-      if (array.attribute("NumberOfComponents").as_int(1) != 1 || !scalar_type(array.attribute("type").value())) continue;
+      if (array.attribute("NumberOfComponents").as_int(1) != 1 || !scalar_type(array.attribute("type").value()))
+        continue;
       const Values v = read_array(array, name);
       if (static_cast<std::int64_t>(v.size()) != mesh_.cells - first_cell)
-        in_.fail_plainly("cell array '" + name + "' has " + std::to_string(v.size()) + " values for " + std::to_string(mesh_.cells - first_cell) + " cells",
+        in_.fail_plainly("cell array '" + name + "' has " + std::to_string(v.size()) + " values for " +
+                             std::to_string(mesh_.cells - first_cell) + " cells",
                          "write or copy the file again");
-      auto it = std::find_if(mesh_.arrays.begin(), mesh_.arrays.end(), [&](const RawMesh::Array& a) { return a.name == name; });
+      auto it = std::find_if(mesh_.arrays.begin(), mesh_.arrays.end(),
+                             [&](const RawMesh::Array& a) { return a.name == name; });
       if (it == mesh_.arrays.end()) it = mesh_.arrays.insert(it, {name, {}});
       if (static_cast<std::int64_t>(it->values.size()) != first_cell) continue;  // not in every piece
       for (std::size_t i = 0; i < v.size(); ++i) it->values.push_back(v.number(i));
@@ -342,6 +372,8 @@ class XmlReader {
 
 }  // namespace
 
-void read_vtk_xml(MeshBytes& in, RawMesh& mesh) { XmlReader(in, mesh).run(); }
+void read_vtk_xml(MeshBytes& in, RawMesh& mesh) {
+  XmlReader(in, mesh).run();
+}
 
 }  // namespace stackmesh

@@ -83,8 +83,7 @@ void write_off(std::FILE* file, const PreparedMesh& mesh) {
   out << "OFF\n# stackmesh, mm" << mark_or_empty(mesh, ". ", "") << '\n';
   out << mesh.points.size() << ' ' << mesh.triangles.size() << " 0\n";
   for (const Vec3 p : mesh.points) out << p.x << ' ' << p.y << ' ' << p.z << '\n';
-  for (const InterfaceTriangle& t : mesh.triangles)
-    out << "3 " << t.v[0] << ' ' << t.v[1] << ' ' << t.v[2] << '\n';
+  for (const InterfaceTriangle& t : mesh.triangles) out << "3 " << t.v[0] << ' ' << t.v[1] << ' ' << t.v[2] << '\n';
 }
 
 }  // namespace stackmesh

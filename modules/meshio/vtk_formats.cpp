@@ -13,17 +13,20 @@ namespace stackmesh {
 namespace {
 
 // VTK's cell types
-constexpr std::int32_t kTriangle = 5, kTet = 10, kWedge = 13, kPyramid = 14, kTriangle6 = 22, kTet10 = 24, kWedge15 = 26, kPyramid13 = 27;
+constexpr std::int32_t kTriangle = 5, kTet = 10, kWedge = 13, kPyramid = 14, kTriangle6 = 22, kTet10 = 24,
+                       kWedge15 = 26, kPyramid13 = 27;
 
 /// Of a cell: the elements, then the triangles.
 std::int32_t cell_type(const PreparedMesh& mesh, std::size_t cell) {
   const bool second = mesh.second_order();
   if (cell < mesh.tets.size()) return second ? kTet10 : kTet;
   if (cell >= mesh.elements()) return second ? kTriangle6 : kTriangle;
-  return is_pyramid(mesh.wedges[cell - mesh.tets.size()]) ? (second ? kPyramid13 : kPyramid) : (second ? kWedge15 : kWedge);
+  return is_pyramid(mesh.wedges[cell - mesh.tets.size()]) ? (second ? kPyramid13 : kPyramid)
+                                                          : (second ? kWedge15 : kWedge);
 }
 
-/// VTK's wedges, of second order too, have the first triangle's normal point away from the second: as if the first two corners of each changed places.
+/// VTK's wedges, of second order too, have the first triangle's normal point away from the second: as if the first two
+/// corners of each changed places.
 std::vector<std::int32_t> vtk_wedge(const PreparedMesh& mesh, std::size_t wedge) {
   std::vector<std::int32_t> n = wedge_nodes_of(mesh, wedge, WedgeOrder::abaqus);
   if (is_pyramid(mesh.wedges[wedge])) return n;
@@ -56,8 +59,8 @@ class XmlFile {
   }
 
   /// Field data that say the frame: a string, as 3D Slicer reads and writes it, or else its character codes.
-  /// And the labels: number, name and colour of each (white where it has none); names of a file without strings are their
-  /// UTF-8 codes, a line each.
+  /// And the labels: number, name and colour of each (white where it has none); names of a file without strings are
+  /// their UTF-8 codes, a line each.
   void field_data(const PreparedMesh& mesh, bool as_string) {
     if (!mesh.space.empty()) text_ += "<!-- SPACE=" + mesh.space + ", mm -->\n";
     text_ += "<FieldData>\n";
@@ -67,13 +70,15 @@ class XmlFile {
     for (const LabelInfo& l : mesh.named) {
       numbers += std::to_string(l.number) + " ";
       names.push_back(l.name);
-      for (const int c : l.colour.value_or(std::array<std::uint8_t, 3>{255, 255, 255})) colours += std::to_string(c) + " ";
+      for (const int c : l.colour.value_or(std::array<std::uint8_t, 3>{255, 255, 255}))
+        colours += std::to_string(c) + " ";
     }
     const std::string count = std::to_string(names.size());
-    text_ += "<DataArray type=\"Int32\" Name=\"label_number\" NumberOfTuples=\"" + count + "\" format=\"ascii\">\n" + numbers + "\n</DataArray>\n";
+    text_ += "<DataArray type=\"Int32\" Name=\"label_number\" NumberOfTuples=\"" + count + "\" format=\"ascii\">\n" +
+             numbers + "\n</DataArray>\n";
     texts("label_name", names, as_string);
-    text_ += "<DataArray type=\"UInt8\" Name=\"label_colour\" NumberOfComponents=\"3\" NumberOfTuples=\"" + count + "\" format=\"ascii\">\n" +
-             colours + "\n</DataArray>\n</FieldData>\n";
+    text_ += "<DataArray type=\"UInt8\" Name=\"label_colour\" NumberOfComponents=\"3\" NumberOfTuples=\"" + count +
+             "\" format=\"ascii\">\n" + colours + "\n</DataArray>\n</FieldData>\n";
   }
 
   void finish(std::FILE* file) {
@@ -103,16 +108,17 @@ class XmlFile {
       if (as_string) text += "0 ";
     }
     const std::string kind = as_string ? "Array" : "DataArray";
-    text_ += "<" + kind + (as_string ? " type=\"String\"" : " type=\"UInt8\"") + " Name=\"" + name + "\" NumberOfTuples=\"" +
-             std::to_string(as_string ? values.size() : codes) + "\" format=\"ascii\">\n" + text + "\n</" + kind + ">\n";
+    text_ += "<" + kind + (as_string ? " type=\"String\"" : " type=\"UInt8\"") + " Name=\"" + name +
+             "\" NumberOfTuples=\"" + std::to_string(as_string ? values.size() : codes) + "\" format=\"ascii\">\n" +
+             text + "\n</" + kind + ">\n";
   }
 
   std::vector<Block> blocks_;
   std::uint64_t offset_ = 0;
 };
 
-/// Cell data of the elements followed by the triangles. A triangle has the label of the tet behind it (of two, that of `below`; a void
-/// has none), so that a viewer, which draws both, shows one colour.
+/// Cell data of the elements followed by the triangles. A triangle has the label of the tet behind it (of two, that of
+/// `below`; a void has none), so that a viewer, which draws both, shows one colour.
 struct CellLabels {
   std::vector<std::int32_t> label, below, above;
 
@@ -122,8 +128,12 @@ struct CellLabels {
     for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.end - g.begin, g.label);
     for (const LabelGroup& g : mesh.labels) label.insert(label.end(), g.wedge_end - g.wedge_begin, g.label);
     if (mesh.sets.parts.empty()) {
-      const auto has_tets = [&](Label l) { return std::any_of(mesh.labels.begin(), mesh.labels.end(), [&](const LabelGroup& g) { return g.label == l; }); };
-      for (const PairGroup& g : mesh.pairs) label.insert(label.end(), g.end - g.begin, g.below != 0 && (g.above == 0 || mesh.elements() == 0 || has_tets(g.below)) ? g.below : g.above);
+      const auto has_tets = [&](Label l) {
+        return std::any_of(mesh.labels.begin(), mesh.labels.end(), [&](const LabelGroup& g) { return g.label == l; });
+      };
+      for (const PairGroup& g : mesh.pairs)
+        label.insert(label.end(), g.end - g.begin,
+                     g.below != 0 && (g.above == 0 || mesh.elements() == 0 || has_tets(g.below)) ? g.below : g.above);
     } else {  // each part has its own side
       for (const TetFace f : face_owners(mesh, false)) label.push_back(label[f.tet]);
     }
@@ -156,14 +166,15 @@ struct Connectivity {
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       corners.insert(corners.end(), mesh.triangles[i].v.begin(), mesh.triangles[i].v.end());
-      if (mesh.second_order()) corners.insert(corners.end(), mesh.triangle_mids[i].begin(), mesh.triangle_mids[i].end());
+      if (mesh.second_order())
+        corners.insert(corners.end(), mesh.triangle_mids[i].begin(), mesh.triangle_mids[i].end());
       ends.push_back(static_cast<std::int64_t>(corners.size()));
     }
   }
 };
 
-/// What a solver model has per cell: modulus, density, element quality, fibres, thickness of skins (0 where there is none). Triangles have
-/// what the tet behind them has.
+/// What a solver model has per cell: modulus, density, element quality, fibres, thickness of skins (0 where there is
+/// none). Triangles have what the tet behind them has.
 struct CellFields {
   struct Field {
     std::string name;
@@ -180,7 +191,8 @@ struct CellFields {
     const auto add = [&](const std::string& name, std::vector<double> of_tets, int components = 1) {
       of_tets.reserve(static_cast<std::size_t>(components) * cells);
       for (const TetFace f : behind)
-        for (int c = 0; c < components; ++c) of_tets.push_back(of_tets[static_cast<std::size_t>(components) * f.tet + c]);
+        for (int c = 0; c < components; ++c)
+          of_tets.push_back(of_tets[static_cast<std::size_t>(components) * f.tet + c]);
       list.push_back({name, components, std::move(of_tets)});
     };
     if (!sets.modulus_mpa.empty()) add("modulus_MPa", sets.modulus_mpa);
@@ -194,7 +206,8 @@ struct CellFields {
     if (!sets.shells.empty()) list.push_back({"skin_mm", 1, std::vector<double>(cells, 0)});
     for (const ShellSet& s : sets.shells) {
       std::map<std::array<std::int32_t, 3>, std::size_t> cell_of;
-      for (std::size_t i = 0; i < mesh.triangles.size(); ++i) cell_of[sorted(mesh.triangles[i].v)] = mesh.elements() + i;
+      for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        cell_of[sorted(mesh.triangles[i].v)] = mesh.elements() + i;
       for (const TetFace f : s.faces) {
         const std::array<std::int32_t, 6> nodes = mesh.outward_face(f);
         const auto found = cell_of.find(sorted({nodes[0], nodes[1], nodes[2]}));

@@ -43,8 +43,8 @@ std::size_t ending_of(const std::string& path) {
 template <std::size_t N>
 const Format* find_format(const Format (&formats)[N], const std::string& path) {
   const std::string ending = lower_case(path.substr(ending_of(path)));
-  const auto* found = std::find_if(std::begin(formats), std::end(formats),
-                                   [&](const Format& f) { return ending == f.ending; });
+  const auto* found =
+      std::find_if(std::begin(formats), std::end(formats), [&](const Format& f) { return ending == f.ending; });
   return found == std::end(formats) ? nullptr : found;
 }
 
@@ -67,7 +67,8 @@ const Format& volume_format(const std::string& path, const MeshWriteOptions& opt
 }
 
 void write_to(AtomicFiles& files, const std::string& path, const Format& format, const PreparedMesh& mesh) {
-  if (format.by_name != nullptr) files.write_by_name(path, [&](const std::string& name) { format.by_name(name, mesh); });
+  if (format.by_name != nullptr)
+    files.write_by_name(path, [&](const std::string& name) { format.by_name(name, mesh); });
   else files.write(path, [&](std::FILE* file) { format.to_stream(file, mesh); });
 }
 
@@ -83,8 +84,12 @@ void require_writer(const std::string& path) {
   const Format* format = find_format(kVolumeFormats, path);
   if (format != nullptr && (format->by_name == write_exodus || format->to_stream == write_med)) require_hdf5_writers();
 }
-std::string surface_endings() { return endings_of(kSurfaceFormats); }
-std::string volume_endings() { return endings_of(kVolumeFormats); }
+std::string surface_endings() {
+  return endings_of(kSurfaceFormats);
+}
+std::string volume_endings() {
+  return endings_of(kVolumeFormats);
+}
 
 void write_surface(AtomicFiles& files, const std::string& path, const InterfaceComplex& surface,
                    const MeshWriteOptions& options) {
@@ -109,8 +114,7 @@ void write_surface(AtomicFiles& files, const std::string& path, const InterfaceC
   }
 }
 
-void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh,
-                  const MeshWriteOptions& options) {
+void write_volume(AtomicFiles& files, const std::string& path, const TetMesh& mesh, const MeshWriteOptions& options) {
   const Format& format = volume_format(path, options);
   PreparedMesh prepared = prepare_volume(mesh, options, path);
   if (format.has_sets) add_interface_sets(prepared);
@@ -124,49 +128,67 @@ std::vector<std::string> losses_of(const std::string& path, const SolverModel& m
   const SolverSets& sets = model.sets;
   std::vector<std::string> losses;
   const auto any_material = [&](MaterialKind kind) {
-    return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind == kind; });
+    return std::any_of(sets.materials.begin(), sets.materials.end(),
+                       [&](const ElementMaterial& m) { return m.kind == kind; });
   };
   const auto any_material_but = [&](MaterialKind kind) {
-    return std::any_of(sets.materials.begin(), sets.materials.end(), [&](const ElementMaterial& m) { return m.kind != kind; });
+    return std::any_of(sets.materials.begin(), sets.materials.end(),
+                       [&](const ElementMaterial& m) { return m.kind != kind; });
   };
   const auto any_step = [&](Analysis analysis) {
     return std::any_of(sets.steps.begin(), sets.steps.end(), [&](const LoadStep& s) { return s.analysis == analysis; });
   };
   if (writer == write_inp && any_material(MaterialKind::holzapfel))
     losses.push_back(path + ": CalculiX has no Holzapfel-Gasser-Ogden material; the deck is for Abaqus");
-  if (writer == write_feb && any_step(Analysis::frequency)) losses.push_back(path + ": FEBio finds no natural frequencies; these steps are left out");
+  if (writer == write_feb && any_step(Analysis::frequency))
+    losses.push_back(path + ": FEBio finds no natural frequencies; these steps are left out");
   if (writer == write_bdf) {
     if (any_step(Analysis::frequency) && any_step(Analysis::statics))
-      losses.push_back(path + ": a Nastran deck has one solution sequence; the frequency steps are written, the static ones left out");
-    if (any_material(MaterialKind::holzapfel)) losses.push_back(path + ": Nastran has no Holzapfel-Gasser-Ogden material; the label gets its isotropic one at small strain");
+      losses.push_back(
+          path +
+          ": a Nastran deck has one solution sequence; the frequency steps are written, the static ones left out");
+    if (any_material(MaterialKind::holzapfel))
+      losses.push_back(
+          path + ": Nastran has no Holzapfel-Gasser-Ogden material; the label gets its isotropic one at small strain");
     for (const ElementMaterial& m : sets.materials)
-      if (m.kind == MaterialKind::orthotropic &&
-          std::any_of(m.tets.begin(), m.tets.end(), [&](std::int32_t t) { return norm(sets.axes[t][0] - sets.axes[m.tets[0]][0]) > 0; }))
-        losses.push_back(path + ": fibres that turn from element to element are not written; label " + std::to_string(m.label) + " gets an isotropic material");
+      if (m.kind == MaterialKind::orthotropic && std::any_of(m.tets.begin(), m.tets.end(), [&](std::int32_t t) {
+            return norm(sets.axes[t][0] - sets.axes[m.tets[0]][0]) > 0;
+          }))
+        losses.push_back(path + ": fibres that turn from element to element are not written; label " +
+                         std::to_string(m.label) + " gets an isotropic material");
     if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
   }
-  const bool pyramids = std::any_of(model.mesh.wedges.begin(), model.mesh.wedges.end(), [](const auto& w) { return is_pyramid(w); });
-  if (writer == write_medit && !model.mesh.wedges.empty()) losses.push_back(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
+  const bool pyramids =
+      std::any_of(model.mesh.wedges.begin(), model.mesh.wedges.end(), [](const auto& w) { return is_pyramid(w); });
+  if (writer == write_medit && !model.mesh.wedges.empty())
+    losses.push_back(path + ": the format has no pyramids; wedges and pyramids are divided into tetrahedra");
   if (writer == write_inp && pyramids && !model.mesh.wedge_mid.empty())
-    losses.push_back(path + ": CalculiX has no pyramids; where layers end they are C3D15 with two corners at one point, which fit their neighbours within a few percent of the stress");
+    losses.push_back(path +
+                     ": CalculiX has no pyramids; where layers end they are C3D15 with two corners at one point, which "
+                     "fit their neighbours within a few percent of the stress");
   const bool mesh_only = format->by_name == write_exodus || writer == write_med;
   if (mesh_only && !sets.steps.empty())
     losses.push_back(path + ": the format holds no load case; supports and loads are left out, their sets are there");
-  if (mesh_only && any_material_but(MaterialKind::linear)) losses.push_back(path + ": of materials the modulus and the density are written, at small strain");
+  if (mesh_only && any_material_but(MaterialKind::linear))
+    losses.push_back(path + ": of materials the modulus and the density are written, at small strain");
   if (mesh_only && !sets.shells.empty()) losses.push_back(path + ": of skins the faces are written, not the thickness");
-  if (mesh_only && !sets.ties.empty()) losses.push_back(path + ": the format holds no ties; the sets of nodes that follow are there");
+  if (mesh_only && !sets.ties.empty())
+    losses.push_back(path + ": the format holds no ties; the sets of nodes that follow are there");
   if (writer == write_cdb || writer == write_dyna) {
-    if (sets.steps.size() > 1 || any_step(Analysis::frequency)) losses.push_back(path + ": the first static step is written, the others are left out");
+    if (sets.steps.size() > 1 || any_step(Analysis::frequency))
+      losses.push_back(path + ": the first static step is written, the others are left out");
     if (any_material_but(MaterialKind::linear))
       losses.push_back(path + ": materials other than linear isotropic ones are written as isotropic at small strain");
-    if (!sets.points.empty() || !sets.springs.empty()) losses.push_back(path + ": rigid points and springs are not written");
+    if (!sets.points.empty() || !sets.springs.empty())
+      losses.push_back(path + ": rigid points and springs are not written");
     if (sets.has_contact()) losses.push_back(path + ": contact is not written, the surfaces are named only");
     if (writer == write_cdb && !sets.shells.empty()) losses.push_back(path + ": skins are not written");
   }
   return losses;
 }
 
-void write_model(AtomicFiles& files, const std::string& path, const SolverModel& model, const MeshWriteOptions& options) {
+void write_model(AtomicFiles& files, const std::string& path, const SolverModel& model,
+                 const MeshWriteOptions& options) {
   const Format& format = volume_format(path, options);
   write_to(files, path, format, prepare_model(model, options, path));
 }

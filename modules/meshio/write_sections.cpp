@@ -22,7 +22,9 @@ std::string ending(const std::string& path) {
   return dot == std::string::npos ? "" : lower_case(path.substr(dot));
 }
 
-std::array<double, 2> position(const Stack& stack, GridPoint p) { return {p.x * stack.grid_x_mm, p.y * stack.grid_y_mm}; }
+std::array<double, 2> position(const Stack& stack, GridPoint p) {
+  return {p.x * stack.grid_x_mm, p.y * stack.grid_y_mm};
+}
 
 /// The closed borders of a label in a section, the label on their left. Where a border meets itself in a point it
 /// turns sharpest to the left, so that loops touch but do not cross.
@@ -93,7 +95,8 @@ void write_json(std::FILE* f, const Stack& stack) {
   std::fprintf(f, "\n]}\n");
 }
 
-/// Where a contour file's coordinates start: the format has no axes, so only sections that lie in the world's own can be put in their place.
+/// Where a contour file's coordinates start: the format has no axes, so only sections that lie in the world's own can
+/// be put in their place.
 Vec3 start_of(const Stack& stack) {
   const Frame plain;
   for (int k = 0; k < 3; ++k)
@@ -134,19 +137,24 @@ void write_svg(std::FILE* f, const Stack& stack) {
   const double margin = 0.05 * std::max(x1 - x0, y1 - y0), w = x1 - x0 + 2 * margin, h = y1 - y0 + 2 * margin;
   const int columns = std::max(1, static_cast<int>(std::ceil(std::sqrt(stack.sections.size() * h / w))));
   const int rows = (static_cast<int>(stack.sections.size()) + columns - 1) / columns;
-  std::fprintf(f, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.6g %.6g\" width=\"%d\">\n<title>%zu sections</title>\n",
+  std::fprintf(f,
+               "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.6g %.6g\" width=\"%d\">\n<title>%zu "
+               "sections</title>\n",
                columns * w, rows * h, std::min(2400, 240 * columns), stack.sections.size());
   const std::set<Label> labels = labels_of(stack);
   for (std::size_t i = 0; i < stack.sections.size(); ++i) {
     const Section& s = stack.sections[i];
     std::fprintf(f, "<g transform=\"translate(%.6g %.6g)\"><title>section %zu, z = %.6g mm</title>\n",
-                 static_cast<double>(i % columns) * w + margin - x0, static_cast<double>(i / columns) * h + margin - y0, i + 1, s.z_mm);
+                 static_cast<double>(i % columns) * w + margin - x0, static_cast<double>(i / columns) * h + margin - y0,
+                 i + 1, s.z_mm);
     int hue = 0;
     for (Label label : labels) {
       hue += 137;
       const std::vector<Loop> loops = loops_of(stack, s, label);
       if (loops.empty()) continue;
-      std::fprintf(f, "<path fill=\"hsl(%d 60%% 70%%)\" fill-rule=\"evenodd\" stroke=\"#222\" stroke-width=\"%.4g\" d=\"", hue % 360, w / 400);
+      std::fprintf(f,
+                   "<path fill=\"hsl(%d 60%% 70%%)\" fill-rule=\"evenodd\" stroke=\"#222\" stroke-width=\"%.4g\" d=\"",
+                   hue % 360, w / 400);
       for (const Loop& l : loops)
         for (std::size_t k = 0; k < l.size(); ++k)
           std::fprintf(f, "%s%.6g %.6g%s", k ? "L" : "M", l[k][0], l[k][1], k + 1 == l.size() ? "Z" : "");
@@ -173,7 +181,9 @@ void write_sections(AtomicFiles& files, const std::string& path, const Stack& st
   } else if (e == ".cnt") {
     const std::set<Label> labels = labels_of(stack);
     for (Label label : labels) {
-      const std::string name = labels.size() == 1 ? path : path.substr(0, path.size() - 4) + "_" + std::to_string(label) + path.substr(path.size() - 4);
+      const std::string name = labels.size() == 1 ? path
+                                                  : path.substr(0, path.size() - 4) + "_" + std::to_string(label) +
+                                                        path.substr(path.size() - 4);
       files.write(name, [&](std::FILE* f) { write_cnt(f, stack, label); });
     }
   } else {

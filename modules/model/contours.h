@@ -22,13 +22,14 @@ struct ContourSection {
   bool interpolated = false;  ///< made between the sections that the file has
 };
 
-/// The contours of one label, as one file or one structure of a file holds them. Orientation and order of the polygons are free.
+/// The contours of one label, as one file or one structure of a file holds them. Orientation and order of the polygons
+/// are free.
 struct LabelContours {
   std::string path;
   Label label = 1;  ///< 0: the caller numbers it
   std::string name;
   std::optional<std::array<std::uint8_t, 3>> colour = std::nullopt;  ///< red, green, blue
-  std::vector<ContourSection> sections;  ///< ascending z
+  std::vector<ContourSection> sections;                              ///< ascending z
   std::vector<Warning> warnings;
 };
 

@@ -19,7 +19,8 @@ EdgeGrid::EdgeGrid(const std::vector<GridSegment>& segments) {
     y0_ = std::min<std::int64_t>(y0_, std::min(s.a.y, s.b.y));
     x1 = std::max<std::int64_t>(x1, std::max(s.a.x, s.b.x));
     y1 = std::max<std::int64_t>(y1, std::max(s.a.y, s.b.y));
-    extent += std::max(std::abs(static_cast<std::int64_t>(s.a.x) - s.b.x), std::abs(static_cast<std::int64_t>(s.a.y) - s.b.y));
+    extent += std::max(std::abs(static_cast<std::int64_t>(s.a.x) - s.b.x),
+                       std::abs(static_cast<std::int64_t>(s.a.y) - s.b.y));
   }
   x0_ -= 1;
   y0_ -= 1;

@@ -6,19 +6,23 @@
 
 namespace stackmesh {
 
-/// Where the interfaces of a label volume run between its voxel centres, as fairing found them: what contours and sheets
-/// follow instead of the faces of the voxels. Axes are those of the stack (in-plane x, y; slices along z).
+/// Where the interfaces of a label volume run between its voxel centres, as fairing found them: what contours and
+/// sheets follow instead of the faces of the voxels. Axes are those of the stack (in-plane x, y; slices along z).
 struct FairedLabels {
   /// A contour's vertex: the pixel corner that it stands for, and how far it lies from there, in pixels.
   struct Corner {
     enum Part : std::uint8_t { whole, south, north };
     std::int32_t x, y;
-    Part part;  ///< of two contours that pass one corner, the one around the pixel with the smaller y is the southern one
+    /// of two contours that pass one corner, the one around the pixel with the smaller y is the southern one
+    Part part;
     float dx, dy;
   };
-  std::vector<std::vector<Corner>> slices;  ///< of each slice, ascending (y, x, part); corners that are absent stay where they are
-  std::vector<char> free;    ///< of each slice: corners may be further than half a pixel from where they were, so that pixel centres change label
-  InterfaceComplex surface;  ///< the interfaces as a whole, in stack coordinates (mm); open at the image's border, and not free of intersections
+  /// of each slice, ascending (y, x, part); corners that are absent stay where they are
+  std::vector<std::vector<Corner>> slices;
+  /// of each slice: corners may be further than half a pixel from where they were, so that pixel centres change label
+  std::vector<char> free;
+  /// the interfaces as a whole, in stack coordinates (mm); open at the image's border, and not free of intersections
+  InterfaceComplex surface;
 };
 
 }  // namespace stackmesh

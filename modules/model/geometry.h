@@ -13,14 +13,24 @@ struct Vec3 {
   double x = 0, y = 0, z = 0;
 };
 
-inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 operator+(Vec3 a, Vec3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec3 operator-(Vec3 a, Vec3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec3 operator*(double s, Vec3 a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+inline double dot(Vec3 a, Vec3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+inline double norm(Vec3 a) {
+  return std::sqrt(dot(a, a));
+}
 
 /// What coordinates count from; all are mm. One world frame turns into another by change_space() (model/space.h).
 enum class Space {
@@ -31,7 +41,9 @@ enum class Space {
 };
 
 /// As reports and options write it.
-inline const char* to_text(Space space) { return space == Space::stack ? "stack" : space == Space::lps ? "lps" : space == Space::ras ? "ras" : "none"; }
+inline const char* to_text(Space space) {
+  return space == Space::stack ? "stack" : space == Space::lps ? "lps" : space == Space::ras ? "ras" : "none";
+}
 
 /// A rigid (possibly mirroring) map p -> origin + x * axes[0] + y * axes[1] + z * axes[2]; the axes are
 /// orthonormal. It takes stack coordinates (in-plane x, y; stacking axis z; mm) to the world.

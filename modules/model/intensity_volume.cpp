@@ -16,7 +16,9 @@ bool inside(const std::array<int, 3>& size, Vec3 v) {
 
 }  // namespace
 
-bool IntensityVolume::contains(Vec3 p) const { return inside(size, voxel_of(p)); }
+bool IntensityVolume::contains(Vec3 p) const {
+  return inside(size, voxel_of(p));
+}
 
 std::optional<double> IntensityVolume::sample(Vec3 p) const {
   const Vec3 v = voxel_of(p);

@@ -48,7 +48,8 @@ bool choose(const std::vector<LabelInfo>& labels, const std::string& item, std::
   // A name wins over a range, so that "lung-2" can be a name.
   if (take([&](const LabelInfo& l) { return l.name == item; })) return true;
   const std::size_t dash = item.find('-');
-  if (is_number(item) || (dash != std::string::npos && is_number(item.substr(0, dash)) && is_number(item.substr(dash + 1)))) {
+  if (is_number(item) ||
+      (dash != std::string::npos && is_number(item.substr(0, dash)) && is_number(item.substr(dash + 1)))) {
     const long low = std::stol(item.substr(0, dash));
     const long high = dash == std::string::npos ? low : std::stol(item.substr(dash + 1));
     if (high < low) fail_usage("a range of labels runs downwards", "'" + item + "'", "write the smaller number first");
@@ -58,7 +59,8 @@ bool choose(const std::vector<LabelInfo>& labels, const std::string& item, std::
 }
 
 /// Indices of labels, 0 excluded.
-std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, const std::string& text, const std::string& option) {
+std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, const std::string& text,
+                                         const std::string& option) {
   std::vector<std::size_t> chosen;
   if (text.empty()) {
     for (std::size_t i = 1; i < labels.size(); ++i) chosen.push_back(i);
@@ -69,16 +71,20 @@ std::vector<std::size_t> labels_in_order(const std::vector<LabelInfo>& labels, c
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string item = text.substr(begin, end - begin);
     begin = end + 1;
-    if (item.empty()) fail_usage("empty entry in a list of labels", option + " '" + text + "'", "write labels as 1,4,7-9,NAME");
+    if (item.empty())
+      fail_usage("empty entry in a list of labels", option + " '" + text + "'", "write labels as 1,4,7-9,NAME");
     if (!choose(labels, item, chosen))
-      fail_input("label '" + item + "' is not in the input", option + " " + text, "choose among: " + list_labels(labels));
+      fail_input("label '" + item + "' is not in the input", option + " " + text,
+                 "choose among: " + list_labels(labels));
   }
   return chosen;
 }
 
 }  // namespace
 
-LabelTable::LabelTable(const std::vector<LabelInfo>& labels) : rows_({{0, ""}}) { rows_.insert(rows_.end(), labels.begin(), labels.end()); }
+LabelTable::LabelTable(const std::vector<LabelInfo>& labels) : rows_({{0, ""}}) {
+  rows_.insert(rows_.end(), labels.begin(), labels.end());
+}
 
 LabelTable::LabelTable(const LabelVolume& volume) : rows_(volume.labels) {}
 

@@ -10,11 +10,12 @@
 namespace stackmesh {
 
 /// The labels of an input, without the background, as a user names them: by number, range or name.
-/// A selection is a text such as "1,4,7-9,femur_left"; a name may be typed with '_' for a blank or another sign (Lt_Lung for "Lt Lung"). An empty text selects all.
-/// Each function takes the option where the text was given, and throws Error(usage) for a malformed text, Error(input) for an absent label.
+/// A selection is a text such as "1,4,7-9,femur_left"; a name may be typed with '_' for a blank or another sign
+/// (Lt_Lung for "Lt Lung"). An empty text selects all. Each function takes the option where the text was given, and
+/// throws Error(usage) for a malformed text, Error(input) for an absent label.
 class LabelTable {
  public:
-  explicit LabelTable(const std::vector<LabelInfo>& labels);          ///< without the background
+  explicit LabelTable(const std::vector<LabelInfo>& labels);  ///< without the background
   explicit LabelTable(const LabelVolume& volume);
   explicit LabelTable(const std::vector<LabelContours>& contours);
 
@@ -27,7 +28,8 @@ class LabelTable {
 
   /// Values given for selections, such as "5=2.0,9=1.0", by label; a later one wins.
   template <class Value>
-  std::map<Label, Value> values(const std::vector<std::pair<std::string, Value>>& texts, const std::string& option) const {
+  std::map<Label, Value> values(const std::vector<std::pair<std::string, Value>>& texts,
+                                const std::string& option) const {
     std::map<Label, Value> out;
     for (const auto& [text, value] : texts)
       for (const Label l : numbers(text, option)) out[l] = value;

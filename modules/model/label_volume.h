@@ -20,21 +20,22 @@ struct LabelInfo {
 /// A stack of label slices on a regular grid. `voxels` holds indices into `labels`, so that any label number
 /// costs two bytes a voxel; labels[0] is always the background, the others ascend by number.
 struct LabelVolume {
-  std::array<int, 3> size = {0, 0, 0};              ///< voxels along x (fastest), y, z
-  std::array<double, 3> spacing_mm = {1, 1, 1};     ///< > 0
-  Vec3 origin_mm;                                   ///< centre of voxel (0, 0, 0), LPS
+  std::array<int, 3> size = {0, 0, 0};                                       ///< voxels along x (fastest), y, z
+  std::array<double, 3> spacing_mm = {1, 1, 1};                              ///< > 0
+  Vec3 origin_mm;                                                            ///< centre of voxel (0, 0, 0), LPS
   std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< orthonormal, LPS
-  bool anatomical = true;                           ///< false: no anatomy is known (PNG stacks); coordinates as they are
-  std::array<bool, 3> goes_on_low = {false, false, false};   ///< the image goes on before the first voxel along an axis (a cropped
+  /// false: no anatomy is known (PNG stacks); coordinates as they are
+  bool anatomical = true;
+  /// the image goes on before the first voxel along an axis (a cropped
+  std::array<bool, 3> goes_on_low = {false, false, false};
   std::array<bool, 3> goes_on_high = {false, false, false};  ///< grid), or behind the last one: that is not its border
-  std::vector<std::uint16_t> voxels;                ///< size[0] * size[1] * size[2]
-  std::vector<LabelInfo> labels;                    ///< labels[0] is {0, ""}
-  std::string kind;                                 ///< "nifti", "nrrd", "seg.nrrd", "metaimage", "gipl", "slices", "masks", "dicom", "dicomseg"
-  std::vector<Warning> warnings;                    ///< what reading found odd but could mend
+  std::vector<std::uint16_t> voxels;                         ///< size[0] * size[1] * size[2]
+  std::vector<LabelInfo> labels;                             ///< labels[0] is {0, ""}
+  /// "nifti", "nrrd", "seg.nrrd", "metaimage", "gipl", "slices", "masks", "dicom", "dicomseg"
+  std::string kind;
+  std::vector<Warning> warnings;  ///< what reading found odd but could mend
 
-  std::size_t index(int i, int j, int k) const {
-    return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
-  }
+  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i; }
   Space space() const { return anatomical ? Space::lps : Space::none; }  ///< of world()
   double voxel_volume_mm3() const { return spacing_mm[0] * spacing_mm[1] * spacing_mm[2]; }
   /// World position (LPS, mm) of a continuous voxel index.
@@ -43,13 +44,15 @@ struct LabelVolume {
   }
 };
 
-/// Whether a volume is as its comments above say: as many voxels as the size asks for, each with an entry in `labels`, spacing above 0, orthonormal axes, labels that ascend
-/// behind the background, and a voxel that is not background. @param name what the error calls it @throws Error(input)
+/// Whether a volume is as its comments above say: as many voxels as the size asks for, each with an entry in `labels`,
+/// spacing above 0, orthonormal axes, labels that ascend behind the background, and a voxel that is not background.
+/// @param name what the error calls it @throws Error(input)
 void check_label_volume(const LabelVolume& volume, const std::string& name);
 
 /// A volume of label numbers, x fastest, 0 for the background; place and names are set afterwards.
 /// @throws Error(input) for negative labels, for more than 65,535 of them, or where numbers and size do not match
-LabelVolume volume_of_labels(const std::vector<Label>& numbers, const std::array<int, 3>& size, const std::array<double, 3>& spacing_mm);
+LabelVolume volume_of_labels(const std::vector<Label>& numbers, const std::array<int, 3>& size,
+                             const std::array<double, 3>& spacing_mm);
 
 /// The same labels, place and grid, without the voxels: what begins a volume on another grid.
 LabelVolume without_voxels(const LabelVolume& volume);

@@ -23,7 +23,7 @@ enum class LayerLimit {
 
 /// A connected part of a label's outer faces where the layer is thinner than asked for, or missing.
 struct LayerPlace {
-  Vec3 at_mm;               ///< a point of the surface near its middle
+  Vec3 at_mm;  ///< a point of the surface near its middle
   double area_mm2 = 0;
   double thickness_mm = 0;  ///< the smallest there; 0: none
   LayerLimit why = LayerLimit::none;
@@ -34,19 +34,25 @@ struct LayerFigures {
   Label label = 0;
   LayerSize asked;
   std::size_t wedges = 0, pyramids = 0, tets = 0;  ///< elements of the layer
-  double area_mm2 = 0, full_rel = 0, thinned_rel = 0, missing_rel = 0;  ///< full: 95 % of the thickness and more, all over a face
-  double thickness_min_mm = 0;                     ///< where there is any
-  std::vector<LayerPlace> places;                  ///< largest first
+  /// full: 95 % of the thickness and more, all over a face
+  double area_mm2 = 0, full_rel = 0, thinned_rel = 0, missing_rel = 0;
+  double thickness_min_mm = 0;     ///< where there is any
+  std::vector<LayerPlace> places;  ///< largest first
 };
 
 /// Why, in a few words, as warnings and reports say it.
 inline const char* layer_limit_name(LayerLimit limit) {
   switch (limit) {
-    case LayerLimit::junction: return "another label begins";
-    case LayerLimit::room: return "no room";
-    case LayerLimit::shape: return "sharp turn";
-    case LayerLimit::beside: return "beside a thin place";
-    default: return "none";
+    case LayerLimit::junction:
+      return "another label begins";
+    case LayerLimit::room:
+      return "no room";
+    case LayerLimit::shape:
+      return "sharp turn";
+    case LayerLimit::beside:
+      return "beside a thin place";
+    default:
+      return "none";
   }
 }
 

@@ -11,8 +11,7 @@ namespace {
 constexpr int kTile = 32;  // voxels in a cache line
 
 std::array<std::size_t, 3> strides(const LabelVolume& volume) {
-  return {1, static_cast<std::size_t>(volume.size[0]),
-          static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
+  return {1, static_cast<std::size_t>(volume.size[0]), static_cast<std::size_t>(volume.size[0]) * volume.size[1]};
 }
 
 }  // namespace

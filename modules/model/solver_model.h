@@ -17,8 +17,8 @@ constexpr int kTetFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
 /// Mid-side nodes of those faces (kTetEdges), each behind the corner that its edge begins at.
 constexpr int kTetFaceMids[4][3] = {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}};
 
-/// Corners of the two triangles at the ends of a wedge, in the order of Abaqus's S1 and S2, seen from inside anticlockwise; and their
-/// mid-side nodes (kWedgeEdges). Its other sides lie between elements of its label.
+/// Corners of the two triangles at the ends of a wedge, in the order of Abaqus's S1 and S2, seen from inside
+/// anticlockwise; and their mid-side nodes (kWedgeEdges). Its other sides lie between elements of its label.
 constexpr int kWedgeFaces[2][3] = {{0, 1, 2}, {3, 5, 4}};
 constexpr int kWedgeFaceMids[2][3] = {{0, 1, 2}, {5, 4, 3}};
 
@@ -27,12 +27,14 @@ struct TetFace {
   std::int32_t tet = 0, face = 0;
 };
 
-/// Corners and (of second order) mid-side nodes of a face, seen from outside anticlockwise; -1 for those that are not there.
+/// Corners and (of second order) mid-side nodes of a face, seen from outside anticlockwise; -1 for those that are not
+/// there.
 template <class Tets, class Mids, class Wedges, class WedgeMids>
-std::array<std::int32_t, 6> outward_face_of(TetFace f, const Tets& tets, const Mids& mids, const Wedges& wedges, const WedgeMids& wedge_mids) {
+std::array<std::int32_t, 6> outward_face_of(TetFace f, const Tets& tets, const Mids& mids, const Wedges& wedges,
+                                            const WedgeMids& wedge_mids) {
   std::array<std::int32_t, 6> nodes = {-1, -1, -1, -1, -1, -1};
   auto element = static_cast<std::size_t>(f.tet);
-  const auto fill = [&](const auto& corners, const auto& middles, const int (&corner)[3], const int (&mid)[3]) {
+  const auto fill = [&](const auto& corners, const auto& middles, const int(&corner)[3], const int(&mid)[3]) {
     nodes = {corners[element][corner[0]], corners[element][corner[2]], corners[element][corner[1]], -1, -1, -1};
     if (!middles.empty())
       for (int k = 0; k < 3; ++k) nodes[3 + k] = middles[element][mid[2 - k]];
@@ -45,12 +47,14 @@ std::array<std::int32_t, 6> outward_face_of(TetFace f, const Tets& tets, const M
   }
   return nodes;
 }
-inline std::array<std::int32_t, 6> outward_face_of(const TetMesh& mesh, TetFace f) { return outward_face_of(f, mesh.tets, mesh.mid, mesh.wedges, mesh.wedge_mid); }
+inline std::array<std::int32_t, 6> outward_face_of(const TetMesh& mesh, TetFace f) {
+  return outward_face_of(f, mesh.tets, mesh.mid, mesh.wedges, mesh.wedge_mid);
+}
 
 /// Nodes under a name. Mid-side nodes are among them when all of their faces are.
 struct NodeSet {
-  std::string name, note;            ///< the note says what it is, for a comment
-  std::vector<std::int32_t> nodes;   ///< ascending
+  std::string name, note;           ///< the note says what it is, for a comment
+  std::vector<std::int32_t> nodes;  ///< ascending
 };
 
 /// Element faces under a name; each belongs to one tet, whose outside is the surface's outside.
@@ -82,7 +86,7 @@ struct Tie {
     std::int32_t node = 0, followed = 0;
     std::array<bool, 3> axes{};  ///< along which it follows: those that no support of its own holds
   };
-  std::string name;  ///< of their node set
+  std::string name;         ///< of their node set
   std::vector<Node> nodes;  ///< ascending
 };
 
@@ -92,7 +96,8 @@ enum class MaterialKind {
   orthotropic,    ///< constants: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; axis 1 is the fibre
   neo_hooke,      ///< constants: C10, bulk modulus K
   mooney_rivlin,  ///< constants: C10, C01, bulk modulus K
-  holzapfel,      ///< Holzapfel-Gasser-Ogden; constants: C10, k1, k2 (none), kappa (none), angle of the fibres to axis 1 (degrees), K
+  /// Holzapfel-Gasser-Ogden; constants: C10, k1, k2 (none), kappa (none), angle of the fibres to axis 1 (degrees), K
+  holzapfel,
 };
 
 /// Elements of one material. A label with a mapped modulus has one for each of its bins.
@@ -102,7 +107,7 @@ struct ElementMaterial {
   double young_mpa = 0, poisson = 0, density_t_mm3 = 0;  ///< of kinds that are not linear: those at small strain
   std::vector<std::int32_t> tets;  ///< elements (TetMesh counts wedges behind the tets), ascending
   MaterialKind kind = MaterialKind::linear;
-  std::vector<double> constants;   ///< MPa where they have a unit; as the kind says
+  std::vector<double> constants;  ///< MPa where they have a unit; as the kind says
 };
 
 /// Shells on faces of tets, sharing their nodes.
@@ -155,7 +160,8 @@ struct SpringSet {
 
 enum class Analysis { statics, frequency };
 
-/// One step of an analysis. It says all that acts in it: what a step before it held or loaded and it does not, is free again.
+/// One step of an analysis. It says all that acts in it: what a step before it held or loaded and it does not, is free
+/// again.
 struct LoadStep {
   std::string name;
   Analysis analysis = Analysis::statics;
@@ -169,7 +175,9 @@ struct LoadStep {
   std::vector<Pressure> pressures;
   Vec3 gravity_mm_s2;  ///< acceleration of every body; 0: none
 
-  bool has_loads() const { return !forces_n.empty() || !point_loads.empty() || !pressures.empty() || norm(gravity_mm_s2) > 0; }
+  bool has_loads() const {
+    return !forces_n.empty() || !point_loads.empty() || !pressures.empty() || norm(gravity_mm_s2) > 0;
+  }
 };
 
 /// What a solver is told beside the mesh: sets, materials, what acts.
@@ -177,9 +185,10 @@ struct SolverSets {
   std::vector<NodeSet> node_sets;
   std::vector<FaceSet> surfaces;
   std::vector<SurfacePair> pairs;
-  std::vector<std::string> parts;          ///< names
-  std::vector<int> part_of_node;           ///< with parts: whose each node is
-  std::vector<std::int32_t> original;      ///< with parts: the node that each was before the parts were given their own copies
+  std::vector<std::string> parts;  ///< names
+  std::vector<int> part_of_node;   ///< with parts: whose each node is
+  /// with parts: the node that each was before the parts were given their own copies
+  std::vector<std::int32_t> original;
   std::vector<Tie> ties;                   ///< no node is in two of them; a node that is followed follows none
   std::vector<ElementMaterial> materials;  ///< every element is in exactly one, or there are none
   bool placeholder_materials = false;      ///< nobody gave any: E = 1 MPa, Poisson's ratio 0.3
@@ -187,16 +196,18 @@ struct SolverSets {
   std::vector<double> modulus_mpa;         ///< per element, not binned; empty: none
   std::vector<double> density_t_mm3;       ///< per element
   std::vector<double> quality;             ///< scaled Jacobian per element (modules/validate); empty: not measured
-  std::vector<std::array<Vec3, 2>> axes;   ///< per element: fibre and, across it, sheet (unit); both 0 where it has none; empty: no tet has
+  /// per element: fibre and, across it, sheet (unit); both 0 where it has none; empty: no tet has
+  std::vector<std::array<Vec3, 2>> axes;
   std::vector<ShellSet> shells;
   std::vector<RigidPoint> points;
   std::vector<SpringSet> springs;
-  std::vector<LoadStep> steps;             ///< in sequence
+  std::vector<LoadStep> steps;  ///< in sequence
   bool has_contact() const {
     return std::any_of(pairs.begin(), pairs.end(), [](const SurfacePair& p) { return p.contact == Contact::contact; });
   }
   bool is_hyperelastic() const {
-    return std::any_of(materials.begin(), materials.end(), [](const ElementMaterial& m) { return m.kind >= MaterialKind::neo_hooke; });
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const ElementMaterial& m) { return m.kind >= MaterialKind::neo_hooke; });
   }
 };
 

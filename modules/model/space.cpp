@@ -9,12 +9,14 @@ namespace stackmesh {
 namespace {
 
 bool turns(Space from, Space to) {
-  if (from == Space::stack || to == Space::stack) fail_internal("stack coordinates were taken for those of the world", "frames");
+  if (from == Space::stack || to == Space::stack)
+    fail_internal("stack coordinates were taken for those of the world", "frames");
   return (from == Space::ras) != (to == Space::ras);
 }
 
 /// @return whether the map mirrors
-bool change(std::vector<Vec3>& points, std::vector<InterfaceTriangle>& triangles, Space& space, Space to, const Frame& frame) {
+bool change(std::vector<Vec3>& points, std::vector<InterfaceTriangle>& triangles, Space& space, Space to,
+            const Frame& frame) {
   bool mirrors = false;
   if (space == Space::stack && to != Space::stack) {
     for (Vec3& p : points) p = frame.to_world(p);
@@ -32,7 +34,9 @@ bool change(std::vector<Vec3>& points, std::vector<InterfaceTriangle>& triangles
 
 }  // namespace
 
-Vec3 in_space(Vec3 p, Space from, Space to) { return turns(from, to) ? Vec3{-p.x, -p.y, p.z} : p; }
+Vec3 in_space(Vec3 p, Space from, Space to) {
+  return turns(from, to) ? Vec3{-p.x, -p.y, p.z} : p;
+}
 
 Frame between(Space from, Space to) {
   Frame f;
@@ -41,7 +45,9 @@ Frame between(Space from, Space to) {
   return f;
 }
 
-void change_space(InterfaceComplex& complex, Space to, const Frame& frame) { change(complex.points, complex.triangles, complex.space, to, frame); }
+void change_space(InterfaceComplex& complex, Space to, const Frame& frame) {
+  change(complex.points, complex.triangles, complex.space, to, frame);
+}
 
 void change_space(TetMesh& mesh, Space to, const Frame& frame) {
   if (change(mesh.points, mesh.faces, mesh.space, to, frame)) turn_all_round(mesh);

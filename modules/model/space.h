@@ -5,8 +5,8 @@
 
 namespace stackmesh {
 
-/// A point or direction of one world frame in another. LPS and RAS differ by half a revolution about z, which is exact and turns no triangle
-/// round; coordinates without anatomy are taken as they are.
+/// A point or direction of one world frame in another. LPS and RAS differ by half a revolution about z, which is exact
+/// and turns no triangle round; coordinates without anatomy are taken as they are.
 /// @throws Error(internal) for Space::stack, which only a Frame leads out of
 Vec3 in_space(Vec3 p, Space from, Space to);
 

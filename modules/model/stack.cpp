@@ -7,9 +7,13 @@
 namespace stackmesh {
 namespace {
 
-__int128 twice_area(GridPoint p, GridPoint q) { return static_cast<__int128>(p.x) * q.y - static_cast<__int128>(q.x) * p.y; }
+__int128 twice_area(GridPoint p, GridPoint q) {
+  return static_cast<__int128>(p.x) * q.y - static_cast<__int128>(q.x) * p.y;
+}
 
-double mm2(const Stack& stack, __int128 twice) { return 0.5 * static_cast<double>(twice) * stack.grid_x_mm * stack.grid_y_mm; }
+double mm2(const Stack& stack, __int128 twice) {
+  return 0.5 * static_cast<double>(twice) * stack.grid_x_mm * stack.grid_y_mm;
+}
 
 }  // namespace
 

@@ -12,9 +12,15 @@ namespace stackmesh {
 struct GridPoint {
   std::int32_t x = 0, y = 0;
 };
-inline bool operator==(GridPoint a, GridPoint b) { return a.x == b.x && a.y == b.y; }
-inline bool operator!=(GridPoint a, GridPoint b) { return !(a == b); }
-inline bool operator<(GridPoint a, GridPoint b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+inline bool operator==(GridPoint a, GridPoint b) {
+  return a.x == b.x && a.y == b.y;
+}
+inline bool operator!=(GridPoint a, GridPoint b) {
+  return !(a == b);
+}
+inline bool operator<(GridPoint a, GridPoint b) {
+  return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
 
 /// A straight contour edge from points[a] to points[b], with the label on either side (x right, y up).
 struct SectionEdge {
@@ -34,9 +40,10 @@ struct Section {
 
 /// How a drawn label ends: told by its own contours, whatever other labels are in the stack.
 struct DrawnEnd {
-  double contour_mm = 0;    ///< height of its first or last drawn contour
-  double half_gap_mm = 0;   ///< half of its own gap there
-  double area_rel = 0;      ///< of that contour, as a share of the next one's (what lies inside counts as the label); 0: there is one contour
+  double contour_mm = 0;   ///< height of its first or last drawn contour
+  double half_gap_mm = 0;  ///< half of its own gap there
+  /// of that contour, as a share of the next one's (what lies inside counts as the label); 0: there is one contour
+  double area_rel = 0;
   bool flat = false;        ///< as the sections were made for; the stitcher decides by its own options
   bool on_section = false;  ///< a flat end lies on the label's last section itself, not half a gap beyond it
   double last_mm = 0;       ///< height of that section: interpolated ones may follow the last contour
@@ -49,14 +56,17 @@ struct DrawnEnds {
 /// Sections in ascending z, on one in-plane grid, and what they stand for.
 struct Stack {
   double grid_x_mm = 1, grid_y_mm = 1;  ///< size of a grid unit along x and y
-  double pixel_mm = 1;                  ///< in-plane pixel (the smaller side); for drawn contours their detail (sections/drawn_detail.h)
-  bool slices = true;   ///< true: a section stands for a slice that reaches half a gap to either side; false: plane cuts
+  /// in-plane pixel (the smaller side); for drawn contours their detail (sections/drawn_detail.h)
+  double pixel_mm = 1;
+  /// true: a section stands for a slice that reaches half a gap to either side; false: plane cuts
+  bool slices = true;
   double end_gap_mm = 0;  ///< gap that the first and last section stand for; 0: the gap to the next real one
   std::vector<Section> sections;
-  std::vector<LabelInfo> labels;        ///< labels[0] is the background
-  Frame frame;                          ///< stack coordinates (mm) to world
-  std::vector<Label> touches_low, touches_high;  ///< labels whose end section lies on the image's own border: empty if unknown
-  std::vector<DrawnEnds> drawn_ends;    ///< drawn contours only: an entry per label
+  std::vector<LabelInfo> labels;  ///< labels[0] is the background
+  Frame frame;                    ///< stack coordinates (mm) to world
+  /// labels whose end section lies on the image's own border: empty if unknown
+  std::vector<Label> touches_low, touches_high;
+  std::vector<DrawnEnds> drawn_ends;  ///< drawn contours only: an entry per label
 };
 
 /// Signed area (mm2) of a label in a section: the sum over its edges; exact before simplification.
@@ -65,7 +75,8 @@ double label_area_mm2(const Stack& stack, const Section& section, Label label);
 /// Area (mm2) within a label's outer loops in a section: what lies in its holes counts as the label.
 double enclosed_area_mm2(const Stack& stack, const Section& section, Label label);
 
-/// The half gap that the first (low) or last section stands for beyond itself, mm; the pixel if there is one section only.
+/// The half gap that the first (low) or last section stands for beyond itself, mm; the pixel if there is one section
+/// only.
 double end_half_gap_mm(const Stack& stack, bool high);
 
 }  // namespace stackmesh

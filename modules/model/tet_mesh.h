@@ -14,28 +14,32 @@ namespace stackmesh {
 /// CalculiX number them).
 constexpr int kTetEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 
-/// The edges of a wedge by its corners, in the order of the mid-side nodes of a 15-node wedge (as VTK, Abaqus and CalculiX number them).
+/// The edges of a wedge by its corners, in the order of the mid-side nodes of a 15-node wedge (as VTK, Abaqus and
+/// CalculiX number them).
 constexpr int kWedgeEdges[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
 
-/// A tetrahedral mesh with a label per element, and the interface triangles it was filled from or keeps. Layers under outer faces
-/// are wedges; elements are counted through: the tets first, then the wedges.
+/// A tetrahedral mesh with a label per element, and the interface triangles it was filled from or keeps. Layers under
+/// outer faces are wedges; elements are counted through: the tets first, then the wedges.
 struct TetMesh {
-  std::vector<Vec3> points;                          ///< mm; the points of the complex come first, unchanged
-  std::vector<std::array<std::int32_t, 4>> tets;     ///< det(b-a, c-a, d-a) > 0
-  std::vector<Label> labels;                         ///< one per element (tets, then wedges), never 0
-  std::vector<InterfaceTriangle> faces;              ///< interface and boundary triangles
-  std::vector<std::array<std::int32_t, 6>> mid;      ///< second order: the point on each edge, kTetEdges; else empty
-  /// Corners 0 1 2, seen from 3 4 5 anticlockwise, and the corners over each of them. Where 2 and 5 are one point it is a pyramid with the base
-  /// 0 3 4 1: a layer ends in them.
+  std::vector<Vec3> points;                       ///< mm; the points of the complex come first, unchanged
+  std::vector<std::array<std::int32_t, 4>> tets;  ///< det(b-a, c-a, d-a) > 0
+  std::vector<Label> labels;                      ///< one per element (tets, then wedges), never 0
+  std::vector<InterfaceTriangle> faces;           ///< interface and boundary triangles
+  std::vector<std::array<std::int32_t, 6>> mid;   ///< second order: the point on each edge, kTetEdges; else empty
+  /// Corners 0 1 2, seen from 3 4 5 anticlockwise, and the corners over each of them. Where 2 and 5 are one point it is
+  /// a pyramid with the base 0 3 4 1: a layer ends in them.
   std::vector<std::array<std::int32_t, 6>> wedges = {};
-  std::vector<std::array<std::int32_t, 9>> wedge_mid = {};  ///< second order: the point on each edge, kWedgeEdges (of a pyramid the last is its corner 2)
-  Space space = Space::stack;                               ///< of the points; model/space.h brings them to another
+  /// second order: the point on each edge, kWedgeEdges (of a pyramid the last is its corner 2)
+  std::vector<std::array<std::int32_t, 9>> wedge_mid = {};
+  Space space = Space::stack;  ///< of the points; model/space.h brings them to another
 
   std::size_t elements() const { return tets.size() + wedges.size(); }
   bool is_wedge(std::size_t element) const { return element >= tets.size(); }
 };
 
-inline bool is_pyramid(const std::array<std::int32_t, 6>& wedge) { return wedge[2] == wedge[5]; }
+inline bool is_pyramid(const std::array<std::int32_t, 6>& wedge) {
+  return wedge[2] == wedge[5];
+}
 
 /// Visits the corners of an element (of a pyramid one of them twice).
 template <class Mesh, class Visit>
@@ -58,7 +62,8 @@ void each_node(Mesh& mesh, std::size_t element, Visit visit) {
   }
 }
 
-/// The tets that a wedge is divided into: each side along the diagonal from its smallest point number, so that neighbours agree.
+/// The tets that a wedge is divided into: each side along the diagonal from its smallest point number, so that
+/// neighbours agree.
 /// @return two (of a pyramid) or three
 std::vector<std::array<std::int32_t, 4>> tets_of_wedge(const std::array<std::int32_t, 6>& wedge);
 

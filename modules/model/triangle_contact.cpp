@@ -22,8 +22,7 @@ int orient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                       (std::abs(u.x * v.y) + std::abs(u.y * v.x)) * std::abs(w.z);
   if (size > 1e-200 && std::abs(det) > 2e-15 * size) return sign(det);
   using P = Kernel::Point_3;
-  return static_cast<int>(
-      CGAL::orientation(P(a.x, a.y, a.z), P(b.x, b.y, b.z), P(c.x, c.y, c.z), P(d.x, d.y, d.z)));
+  return static_cast<int>(CGAL::orientation(P(a.x, a.y, a.z), P(b.x, b.y, b.z), P(c.x, c.y, c.z), P(d.x, d.y, d.z)));
 }
 
 struct Flat2 {
@@ -69,8 +68,7 @@ bool segment_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const C
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) {
     const int axis = view_axis(t);
-    const Flat2 a = look(t[0], axis), b = look(t[1], axis), c = look(t[2], axis), u = look(p, axis),
-                v = look(q, axis);
+    const Flat2 a = look(t[0], axis), b = look(t[1], axis), c = look(t[2], axis), u = look(p, axis), v = look(q, axis);
     return flat_inside(u, a, b, c) || flat_inside(v, a, b, c) || flat_segments_meet(u, v, a, b) ||
            flat_segments_meet(u, v, b, c) || flat_segments_meet(u, v, c, a);
   }
@@ -85,8 +83,8 @@ bool separates(const Vec3& u, const Corners3& s, const Corners3& t, double gap) 
   if (!(squared > 0)) return false;
   const double s0 = dot(u, s[0] - s[0]), s1 = dot(u, s[1] - s[0]), s2 = dot(u, s[2] - s[0]);
   const double t0 = dot(u, t[0] - s[0]), t1 = dot(u, t[1] - s[0]), t2 = dot(u, t[2] - s[0]);
-  const double between = std::max(std::min({t0, t1, t2}) - std::max({s0, s1, s2}),
-                                  std::min({s0, s1, s2}) - std::max({t0, t1, t2}));
+  const double between =
+      std::max(std::min({t0, t1, t2}) - std::max({s0, s1, s2}), std::min({s0, s1, s2}) - std::max({t0, t1, t2}));
   return between > 0 && between * between >= gap * gap * squared;
 }
 
@@ -98,14 +96,13 @@ bool apart_meet(const Corners3& s, const Corners3& t) {
   if (on_t[0] == on_t[1] && on_t[1] == on_t[2] && on_t[0] != 0) return false;
   for (int k = 0; k < 3; ++k) {
     const int n = (k + 1) % 3;
-    if (segment_meets(t[k], t[n], on_s[k], on_s[n], s) || segment_meets(s[k], s[n], on_t[k], on_t[n], t))
-      return true;
+    if (segment_meets(t[k], t[n], on_s[k], on_s[n], s) || segment_meets(s[k], s[n], on_t[k], on_t[n], t)) return true;
   }
   return false;
 }
 
-/// True when a plane through the shared corner, square to the difference of their middle directions, keeps both strictly
-/// on its sides.
+/// True when a plane through the shared corner, square to the difference of their middle directions, keeps both
+/// strictly on its sides.
 bool fan_apart(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
   const Vec3 p = b - a, q = c - a, r = d - a, s = e - a;
   const auto length = [](const Vec3& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); };
@@ -129,8 +126,7 @@ bool corner_meet(const Corners3& s, int i, const Corners3& t, int j) {
 }
 
 bool edge_meet(const Corners3& s, const Corners3& t, const SharedCorners& h) {
-  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]],
-             &d = t[3 - h.in_t[0] - h.in_t[1]];
+  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]], &d = t[3 - h.in_t[0] - h.in_t[1]];
   if (orient(a, b, c, d) != 0) return false;
   const int axis = view_axis(s);
   const Flat2 p = look(a, axis), q = look(b, axis);
@@ -198,12 +194,9 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double l0 = dot(ab, ab), l1 = dot(bc, bc), l2 = dot(ca, ca);
   const double twice = norm(cross(ab, ca));
   double d;  // the smallest angle lies opposite the shortest side
-  if (l0 <= l1 && l0 <= l2)
-    d = -dot(bc, ca);
-  else if (l1 <= l2)
-    d = -dot(ca, ab);
-  else
-    d = -dot(ab, bc);
+  if (l0 <= l1 && l0 <= l2) d = -dot(bc, ca);
+  else if (l1 <= l2) d = -dot(ca, ab);
+  else d = -dot(ab, bc);
   return std::atan2(twice, d);
 }
 
@@ -248,8 +241,7 @@ NearestPoints nearest_points(const Corners3& s, const Corners3& t) {
 }
 
 double sheet_cosine(const Corners3& s, const Corners3& t, const SharedCorners& h) {
-  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]],
-             &d = t[3 - h.in_t[0] - h.in_t[1]];
+  const Vec3 &a = s[h.in_s[0]], &b = s[h.in_s[1]], &c = s[3 - h.in_s[0] - h.in_s[1]], &d = t[3 - h.in_t[0] - h.in_t[1]];
   const Vec3 m = cross(b - a, c - a), n = cross(b - a, d - a);
   const double size = std::sqrt(dot(m, m) * dot(n, n));
   return size > 0 ? dot(m, n) / size : 1;

@@ -29,7 +29,9 @@ struct NearestPoints {
   double squared = 1e300;
 };
 NearestPoints nearest_points(const Corners3& s, const Corners3& t);
-inline double squared_distance(const Corners3& s, const Corners3& t) { return nearest_points(s, t).squared; }
+inline double squared_distance(const Corners3& s, const Corners3& t) {
+  return nearest_points(s, t).squared;
+}
 
 /// Cosine of the angle between the half planes of two triangles at their common edge; 1: folded onto each
 /// other.

@@ -32,10 +32,8 @@ void VoxelComponents::join_rows(std::size_t row, std::size_t other) {
       const std::int32_t a = find(static_cast<std::int32_t>(i)), b = find(static_cast<std::int32_t>(j));
       parent_[std::max(a, b)] = std::min(a, b);
     }
-    if (runs_[i].x1 < runs_[j].x1)
-      ++i;
-    else
-      ++j;
+    if (runs_[i].x1 < runs_[j].x1) ++i;
+    else ++j;
   }
 }
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/slices.h"
 #include "model/label_volume.h"
+#include "model/slices.h"
 
 namespace stackmesh {
 

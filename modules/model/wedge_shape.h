@@ -9,7 +9,8 @@
 
 namespace stackmesh {
 
-/// A place in a wedge: u and v are the coordinates of corners 1 and 2 within the triangle, w runs from -1 (corners 0 1 2) to 1.
+/// A place in a wedge: u and v are the coordinates of corners 1 and 2 within the triangle, w runs from -1 (corners 0 1
+/// 2) to 1.
 struct WedgePlace {
   double u = 0, v = 0, w = 0, weight = 0;
 };
@@ -51,9 +52,11 @@ inline WedgePoint wedge_point(const WedgeNodes& node, const WedgePlace& p) {
       const double by_l = 0.5 * (4 * l[k] - 1) * z - 0.5 * bubble, q = l[k] * (2 * l[k] - 1);
       add(k + 3 * top, 0.5 * q * z - 0.5 * l[k] * bubble, by_l * du[k], by_l * dv[k], 0.5 * s * q + l[k] * p.w);
       const int m = (k + 1) % 3;
-      add(6 + k + 3 * top, 2 * l[k] * l[m] * z, 2 * z * (du[k] * l[m] + l[k] * du[m]), 2 * z * (dv[k] * l[m] + l[k] * dv[m]), 2 * s * l[k] * l[m]);
+      add(6 + k + 3 * top, 2 * l[k] * l[m] * z, 2 * z * (du[k] * l[m] + l[k] * du[m]),
+          2 * z * (dv[k] * l[m] + l[k] * dv[m]), 2 * s * l[k] * l[m]);
     }
-  for (int k = 0; k < 3 && node.quadratic; ++k) add(12 + k, l[k] * bubble, bubble * du[k], bubble * dv[k], -2 * p.w * l[k]);
+  for (int k = 0; k < 3 && node.quadratic; ++k)
+    add(12 + k, l[k] * bubble, bubble * du[k], bubble * dv[k], -2 * p.w * l[k]);
   return {x, dot(xu, cross(xv, xw))};
 }
 
@@ -67,7 +70,10 @@ inline std::vector<WedgePlace> wedge_rule(const std::vector<std::pair<double, do
 }
 /// Exact for the determinant of a wedge of 15 nodes.
 inline const std::vector<WedgePlace>& wedge_volume_rule() {
-  static const std::vector<WedgePlace> rule = wedge_rule({{0.0694318442029737, 0.1739274225687269}, {0.3300094782075719, 0.3260725774312731}, {0.6699905217924281, 0.3260725774312731}, {0.9305681557970263, 0.1739274225687269}});
+  static const std::vector<WedgePlace> rule = wedge_rule({{0.0694318442029737, 0.1739274225687269},
+                                                          {0.3300094782075719, 0.3260725774312731},
+                                                          {0.6699905217924281, 0.3260725774312731},
+                                                          {0.9305681557970263, 0.1739274225687269}});
   return rule;
 }
 
@@ -77,16 +83,21 @@ inline double wedge_volume(const WedgeNodes& nodes) {
   return sum;
 }
 
-/// The places of nodes (but corner 2 of a pyramid, where the determinant vanishes) and of the integration points of 6 and 15 nodes.
+/// The places of nodes (but corner 2 of a pyramid, where the determinant vanishes) and of the integration points of 6
+/// and 15 nodes.
 inline std::vector<WedgePlace> wedge_check_places(bool pyramid) {
   static constexpr double corner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
   std::vector<WedgePlace> out;
   for (const double w : {-1.0, 0.0, 1.0}) {
     for (int k = 0; k < (pyramid ? 2 : 3); ++k) out.push_back({corner[k][0], corner[k][1], w, 0});
-    for (int k = 0; k < 3; ++k) out.push_back({0.5 * (corner[k][0] + corner[(k + 1) % 3][0]), 0.5 * (corner[k][1] + corner[(k + 1) % 3][1]), w, 0});
+    for (int k = 0; k < 3; ++k)
+      out.push_back(
+          {0.5 * (corner[k][0] + corner[(k + 1) % 3][0]), 0.5 * (corner[k][1] + corner[(k + 1) % 3][1]), w, 0});
   }
   for (const double w : {-0.7745966692414834, -0.5773502691896257, 0.0, 0.5773502691896257, 0.7745966692414834})
-    for (const auto& [u, v] : {std::pair(1.0 / 6, 1.0 / 6), std::pair(2.0 / 3, 1.0 / 6), std::pair(1.0 / 6, 2.0 / 3), std::pair(1.0 / 3, 1.0 / 3)}) out.push_back({u, v, w, 0});
+    for (const auto& [u, v] : {std::pair(1.0 / 6, 1.0 / 6), std::pair(2.0 / 3, 1.0 / 6), std::pair(1.0 / 6, 2.0 / 3),
+                               std::pair(1.0 / 3, 1.0 / 3)})
+      out.push_back({u, v, w, 0});
   return out;
 }
 

@@ -54,9 +54,11 @@ std::function<std::optional<int>(const Vec3&)> section_finder(const Judged& j) {
 }
 
 /// Where a label's surplus handles are: its narrowest.
-void add_handles(RunReport& report, const InterfaceComplex& surface, const LabelTopology& t, const std::function<std::optional<int>(const Vec3&)>& section_of) {
+void add_handles(RunReport& report, const InterfaceComplex& surface, const LabelTopology& t,
+                 const std::function<std::optional<int>(const Vec3&)>& section_of) {
   if (t.surplus() == 0) return;
-  for (HandlePlace& h : find_handles(surface, t.label, std::min<std::size_t>(100, static_cast<std::size_t>(t.surplus())))) {
+  for (HandlePlace& h :
+       find_handles(surface, t.label, std::min<std::size_t>(100, static_cast<std::size_t>(t.surplus())))) {
     Defect d;
     d.kind = "handle";
     d.label = t.label;
@@ -66,20 +68,24 @@ void add_handles(RunReport& report, const InterfaceComplex& surface, const Label
     d.entities.assign(h.triangles.begin(), h.triangles.end());
     d.size_mm = h.size_mm;
     char text[160];
-    std::snprintf(text, sizeof text, "Label %d has a handle or tunnel about %.3g mm wide at (%.2f, %.2f, %.2f) mm that no slice asks for.", static_cast<int>(t.label), h.size_mm, h.where.x,
-                  h.where.y, h.where.z);
+    std::snprintf(text, sizeof text,
+                  "Label %d has a handle or tunnel about %.3g mm wide at (%.2f, %.2f, %.2f) mm that no slice asks for.",
+                  static_cast<int>(t.label), h.size_mm, h.where.x, h.where.y, h.where.z);
     d.text = text;
     report.defects.push_back(std::move(d));
   }
 }
 
 /// Pieces of a label beyond those that the drawn sections imply, one by one: its smallest.
-void add_loose_pieces(RunReport& report, const InterfaceComplex& surface, const Boundaries& pieces, const LabelTopology& t,
-                      const std::function<std::optional<int>(const Vec3&)>& section_of) {
+void add_loose_pieces(RunReport& report, const InterfaceComplex& surface, const Boundaries& pieces,
+                      const LabelTopology& t, const std::function<std::optional<int>(const Vec3&)>& section_of) {
   std::vector<std::int32_t> outer;
   for (std::size_t s = 0; s < pieces.piece_row.size(); ++s)
-    if (pieces.labels[pieces.piece_row[s]].label == t.label && pieces.piece_volume_mm3[s] > 0) outer.push_back(static_cast<std::int32_t>(s));
-  std::stable_sort(outer.begin(), outer.end(), [&](std::int32_t a, std::int32_t b) { return pieces.piece_volume_mm3[a] < pieces.piece_volume_mm3[b]; });
+    if (pieces.labels[pieces.piece_row[s]].label == t.label && pieces.piece_volume_mm3[s] > 0)
+      outer.push_back(static_cast<std::int32_t>(s));
+  std::stable_sort(outer.begin(), outer.end(), [&](std::int32_t a, std::int32_t b) {
+    return pieces.piece_volume_mm3[a] < pieces.piece_volume_mm3[b];
+  });
   outer.resize(std::min<std::size_t>({outer.size(), static_cast<std::size_t>(t.pieces - t.implied_pieces), 100}));
   for (const std::int32_t piece : outer) {
     Defect d;
@@ -100,10 +106,15 @@ void add_loose_pieces(RunReport& report, const InterfaceComplex& surface, const 
     d.size_mm = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     if (section_of) d.section = section_of(d.where);
     char text[240];
-    std::snprintf(text, sizeof text, "Label %d has a piece of its own of %.3g mm3 at (%.2f, %.2f, %.2f) mm, from (%.1f, %.1f, %.1f) to (%.1f, %.1f, %.1f), that the sections do not imply.",
-                  static_cast<int>(t.label), pieces.piece_volume_mm3[piece], d.where.x, d.where.y, d.where.z, low.x, low.y, low.z, high.x, high.y, high.z);
+    std::snprintf(text, sizeof text,
+                  "Label %d has a piece of its own of %.3g mm3 at (%.2f, %.2f, %.2f) mm, from (%.1f, %.1f, %.1f) to "
+                  "(%.1f, %.1f, %.1f), that the sections do not imply.",
+                  static_cast<int>(t.label), pieces.piece_volume_mm3[piece], d.where.x, d.where.y, d.where.z, low.x,
+                  low.y, low.z, high.x, high.y, high.z);
     d.text = text;
-    report.warnings.push_back({WarningCode::piece_not_implied, "label " + std::to_string(t.label), "label" + d.text.substr(5, d.text.size() - 6) + "; --min-piece or --keep-largest leaves it out"});
+    report.warnings.push_back(
+        {WarningCode::piece_not_implied, "label " + std::to_string(t.label),
+         "label" + d.text.substr(5, d.text.size() - 6) + "; --min-piece or --keep-largest leaves it out"});
     report.defects.push_back(std::move(d));
   }
 }
@@ -132,7 +143,8 @@ void check_mesh(RunReport& report, const InterfaceComplex& surface, const TetMes
     for (const std::int32_t v : t.v) used[v] = 1;
   report.surface->vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   report.volume = check_volume(*mesh, {threads});
-  const bool fine = report.volume->inverted == 0 && report.volume->conforms && report.surface->open_edges == 0 && report.surface->self_intersections == 0;
+  const bool fine = report.volume->inverted == 0 && report.volume->conforms && report.surface->open_edges == 0 &&
+                    report.surface->self_intersections == 0;
   report.closure = fine ? "verified" : "failed";
 }
 
@@ -203,7 +215,9 @@ void complete_report(RunReport& report, const Judged& j) {
   TopologyOptions nests;
   nests.axis = j.axis;
   nests.threads = j.threads;
-  const std::vector<LabelTopology> topology = j.volume ? check_topology(*report.surface, *j.volume, nests) : j.sections ? check_topology(*report.surface, *j.sections, nests) : std::vector<LabelTopology>();
+  const std::vector<LabelTopology> topology = j.volume     ? check_topology(*report.surface, *j.volume, nests)
+                                              : j.sections ? check_topology(*report.surface, *j.sections, nests)
+                                                           : std::vector<LabelTopology>();
   if (j.volume || j.sections) in.topology = &topology;
   stop_if_cancelled();
   report.verdicts = judge(in, report.limits);

@@ -12,8 +12,8 @@ namespace stackmesh {
 /// A row for each label, with its number, name and colour.
 void add_label_rows(RunReport& report, const std::vector<LabelInfo>& labels);
 
-/// Checks a given surface, and the tetrahedra that it bounds (nullptr: none): gives the report its `surface`, `volume` and
-/// `closure`.
+/// Checks a given surface, and the tetrahedra that it bounds (nullptr: none): gives the report its `surface`, `volume`
+/// and `closure`.
 void check_mesh(RunReport& report, const InterfaceComplex& surface, const TetMesh* mesh, int threads);
 
 /// Gives the row of each label what `surface`, `volume` and the fidelity (nullptr: not measured) say of it.

@@ -9,31 +9,31 @@
 
 #include "base/cancel.h"
 #include "base/error.h"
+#include "base/stage_clock.h"
 #include "base/warning.h"
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/element_quality.h"
 #include "fem/estimate_error.h"
 #include "fem/join_parts.h"
-#include "fem/solver_names.h"
-#include "image/read_label_table.h"
-#include "model/label_table.h"
-#include "model/space.h"
 #include "fem/load_case.h"
 #include "fem/recover_stress.h"
 #include "fem/selection.h"
+#include "fem/solver_names.h"
 #include "fem/split_parts.h"
 #include "image/read_image.h"
+#include "image/read_label_table.h"
+#include "mesh/voids.h"
 #include "meshio/read_frd.h"
 #include "meshio/read_mesh.h"
+#include "model/label_table.h"
+#include "model/space.h"
+#include "pipeline/complete_report.h"
 #include "pipeline/mesh_product.h"
 #include "pipeline/output_files.h"
-#include "pipeline/complete_report.h"
 #include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
 #include "pipeline/solve_with_calculix.h"
-#include "base/stage_clock.h"
-#include "mesh/voids.h"
 #include "report/html_report.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
@@ -63,30 +63,38 @@ class FemRun {
     }
     if (o_.accuracy_rel) check_accuracy();
     if (o_.accuracy_rel && !o_.mesh.layers.empty())
-      fail_usage("--accuracy cuts tetrahedra, not wedges", "--layer", "leave one of them out; compare runs with more wedges and a smaller --edge-length instead");
+      fail_usage("--accuracy cuts tetrahedra, not wedges", "--layer",
+                 "leave one of them out; compare runs with more wedges and a smaller --edge-length instead");
     if (!o_.image.empty()) image_ = read_image(o_.image, {"", o_.mesh.input.allow_outside});
     const std::vector<std::string>& inputs = o_.mesh.input.paths;
     if (inputs.size() != 1 || !is_readable_mesh(inputs[0])) return from_labels();
-    if (!o_.mesh.layers.empty()) fail_usage("--layer needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
-    if (!o_.mesh.input.voids.empty()) fail_usage("--void needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
+    if (!o_.mesh.layers.empty())
+      fail_usage("--layer needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
+    if (!o_.mesh.input.voids.empty())
+      fail_usage("--void needs the labels, not a mesh of them", inputs[0], "give the labels that it was made from");
     return from_mesh(inputs[0]);
   }
 
  private:
   /// What --accuracy needs, told before anything is meshed.
   void check_accuracy() const {
-    if (!has_calculix()) fail_usage("--accuracy solves the load case with CalculiX, and there is no ccx in PATH", "--accuracy", "install calculix-ccx, or leave --accuracy out");
+    if (!has_calculix())
+      fail_usage("--accuracy solves the load case with CalculiX, and there is no ccx in PATH", "--accuracy",
+                 "install calculix-ccx, or leave --accuracy out");
     const auto has_static_step = [](const LoadCase& c) {
       if (c.steps.empty()) return !c.always.empty();
-      return std::any_of(c.steps.begin(), c.steps.end(), [](const LoadCase::Step& s) { return s.analysis == Analysis::statics; });
+      return std::any_of(c.steps.begin(), c.steps.end(),
+                         [](const LoadCase::Step& s) { return s.analysis == Analysis::statics; });
     };
     if (!plan_ || !has_static_step(plan_->load_case))
-      fail_usage("--accuracy needs a load case with a static step to solve", "--accuracy", "give one with --materials LAW.json (docs/fem.md)");
+      fail_usage("--accuracy needs a load case with a static step to solve", "--accuracy",
+                 "give one with --materials LAW.json (docs/fem.md)");
   }
 
   RunReport from_labels() {
     return run_mesh(
-        o_.mesh, progress_, [&](MeshProduct product, RunReport& report, AtomicFiles& files) { model(std::move(product), report, files); },
+        o_.mesh, progress_,
+        [&](MeshProduct product, RunReport& report, AtomicFiles& files) { model(std::move(product), report, files); },
         [&](const std::vector<LabelInfo>& labels) { check_labels(labels); });
   }
 
@@ -122,7 +130,8 @@ class FemRun {
     if (o_.mesh.mesh.refine > 0) {
       const double tets = static_cast<double>(product.mesh.tets.size()) * std::pow(8, o_.mesh.mesh.refine);
       if (!o_.mesh.mesh.many_tets && tets > 1e7)
-        fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine", "refine less often, or say --yes");
+        fail_usage("about " + std::to_string(std::lround(tets / 1e6)) + " million tetrahedra would be made", "--refine",
+                   "refine less often, or say --yes");
       clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.mesh.refine); });
     }
     name_voids(product.mesh.faces, behind);
@@ -158,7 +167,8 @@ class FemRun {
       if (!is_volume_format(path))
         fail_usage("a mesh is made into a solver model, not into this", "'" + path + "'", "choose " + volume_endings());
     check_report_names(o_.mesh.reports);
-    if (o_.mesh.space != "lps" && o_.mesh.space != "ras") fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
+    if (o_.mesh.space != "lps" && o_.mesh.space != "ras")
+      fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
   }
 
   MeshProduct read(const std::string& path, RunReport& report) {
@@ -170,8 +180,11 @@ class FemRun {
     report.input.kind = "mesh";
     for (const std::string& note : file.notes) report.warnings.push_back({WarningCode::mesh_converted, path, note});
     if (file.label_source == LabelSource::none)
-      report.warnings.push_back(warning_at(WarningCode::labels_matched, path, "no cell array holds labels: every element has label 1 (name an array with --label-array)"));
-    if (!file.space) report.warnings.push_back(warning_at(WarningCode::frame, path, "does not say its frame; it is taken as LPS"));
+      report.warnings.push_back(
+          warning_at(WarningCode::labels_matched, path,
+                     "no cell array holds labels: every element has label 1 (name an array with --label-array)"));
+    if (!file.space)
+      report.warnings.push_back(warning_at(WarningCode::frame, path, "does not say its frame; it is taken as LPS"));
     MeshProduct product;
     product.mesh = take_elements(file);
     product.mesh.space = file.space.value_or(Space::lps);
@@ -180,10 +193,13 @@ class FemRun {
     product.up = o_.up;
     if (product.mesh.space == Space::ras) change_space(product.mesh, Space::lps);  // and back again
     if (!product.mesh.wedges.empty() && (o_.mesh.mesh.refine > 0 || o_.accuracy_rel))
-      fail_usage("the mesh has wedges, and only tetrahedra are cut into eight", path, o_.mesh.mesh.refine > 0 ? "leave --refine out" : "leave --accuracy out");
+      fail_usage("the mesh has wedges, and only tetrahedra are cut into eight", path,
+                 o_.mesh.mesh.refine > 0 ? "leave --refine out" : "leave --accuracy out");
     const std::set<Label> present(product.mesh.labels.begin(), product.mesh.labels.end());
     for (const Label l : present) {
-      if (l <= 0) fail_input("a label of the mesh is not above 0", path + ", label " + std::to_string(l), "number labels from 1; 0 is the background");
+      if (l <= 0)
+        fail_input("a label of the mesh is not above 0", path + ", label " + std::to_string(l),
+                   "number labels from 1; 0 is the background");
       product.labels.push_back({l, ""});
       for (const LabelInfo& named : file.names)
         if (named.number == l) product.labels.back() = named;
@@ -209,7 +225,9 @@ class FemRun {
   std::vector<Label> voids_behind(const std::vector<InterfaceTriangle>& faces) const {
     std::vector<Label> behind(walls_.empty() ? 0 : faces.size(), 0);
     for (std::size_t i = 0; i < behind.size(); ++i)
-      if (const auto at = walls_.find(sorted(faces[i].v)); at != walls_.end() && (faces[i].below == 0 || faces[i].above == 0)) behind[i] = at->second;
+      if (const auto at = walls_.find(sorted(faces[i].v));
+          at != walls_.end() && (faces[i].below == 0 || faces[i].above == 0))
+        behind[i] = at->second;
     return behind;
   }
 
@@ -236,12 +254,14 @@ class FemRun {
       if (quality.non_positive.size() > 100) list += ", ...";
       fail_input(std::to_string(quality.non_positive.size()) + " of " + std::to_string(mesh.elements()) +
                      " elements have a Jacobian that is not positive",
-                 report.input.path + ", elements " + list, "mesh it again, or turn the elements round where their nodes are in the wrong order");
+                 report.input.path + ", elements " + list,
+                 "mesh it again, or turn the elements round where their nodes are in the wrong order");
     }
     if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
       mesh.mid.clear();
       mesh.wedge_mid.clear();
-      report.warnings.push_back({WarningCode::element_order, "", "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
+      report.warnings.push_back(
+          {WarningCode::element_order, "", "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
     }
     add_label_rows(report, product.labels);
     // A mesh whose parts have nodes of their own is judged as one body.
@@ -249,9 +269,11 @@ class FemRun {
     if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {
       const std::string text = std::to_string(twins) + " nodes lie exactly on another one";
       if (o_.parts.empty()) {
-        report.warnings.push_back({WarningCode::coincident_nodes, "", text + " and stay apart from it; --parts makes contact or ties of such faces"});
+        report.warnings.push_back({WarningCode::coincident_nodes, "",
+                                   text + " and stay apart from it; --parts makes contact or ties of such faces"});
       } else {
-        report.warnings.push_back({WarningCode::coincident_nodes, "", text + ": they were joined to it before --parts"});
+        report.warnings.push_back(
+            {WarningCode::coincident_nodes, "", text + ": they were joined to it before --parts"});
         mesh = whole;
         walls_.clear();  // they name the nodes before
       }
@@ -260,7 +282,8 @@ class FemRun {
     whole.faces = faces_of_tets(whole);
     judge(whole, report);
     if (!report.volume->conforms)
-      report.warnings.push_back({WarningCode::not_conforming, "", "the mesh does not conform: faces or edges of its tetrahedra do not match"});
+      report.warnings.push_back({WarningCode::not_conforming, "",
+                                 "the mesh does not conform: faces or edges of its tetrahedra do not match"});
   }
 
   /// Its surface only for a report.
@@ -294,14 +317,17 @@ class FemRun {
     const SolverModel& model = built.model;
     for (const Warning& w : built.warnings) report.warnings.push_back(w);
     report.fem = summary(model, built.materials);
-    if (asks_for_html(o_.mesh.reports)) report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
+    if (asks_for_html(o_.mesh.reports))
+      report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
     report.fem->accuracy = std::move(accuracy);
-    if (report.fem->accuracy && !report.fem->accuracy->reached) report.warnings.push_back({WarningCode::accuracy, "", not_reached(*report.fem->accuracy)});
+    if (report.fem->accuracy && !report.fem->accuracy->reached)
+      report.warnings.push_back({WarningCode::accuracy, "", not_reached(*report.fem->accuracy)});
 
     MeshWriteOptions write = o_.mesh.write;
     for (const std::string& path : o_.mesh.outputs) {
       if (!is_volume_format(path)) continue;
-      for (const std::string& loss : losses_of(path, model)) report.warnings.push_back({WarningCode::format_loss, path, loss});
+      for (const std::string& loss : losses_of(path, model))
+        report.warnings.push_back({WarningCode::format_loss, path, loss});
       write_model(files, path, model, write);
     }
   }
@@ -310,14 +336,17 @@ class FemRun {
   std::vector<double> mises_of(const SolverModel& model) const {
     const FrdResult result = read_frd(o_.result);
     const auto stress = result.fields.find("STRESS");
-    if (stress == result.fields.end()) fail_input("the result has no stress", o_.result, "ask for it in the deck: *EL FILE and S, as decks with a load case do");
+    if (stress == result.fields.end())
+      fail_input("the result has no stress", o_.result,
+                 "ask for it in the deck: *EL FILE and S, as decks with a load case do");
     std::vector<double> mises(model.mesh.points.size(), 0);
     for (std::size_t i = 0; i < result.numbers.size(); ++i) {
       const std::int64_t node = result.numbers[i] - 1;
       if (node < 0 || node >= static_cast<std::int64_t>(mises.size())) continue;  // of rigid points and springs
       const Vec3 p = model.mesh.points[node];
       if (norm(result.points[i] - p) > 1e-3 + 1e-4 * norm(p))
-        fail_input("the result is of another mesh: its node " + std::to_string(node + 1) + " lies elsewhere", o_.result, "give the result of this input with these very options");
+        fail_input("the result is of another mesh: its node " + std::to_string(node + 1) + " lies elsewhere", o_.result,
+                   "give the result of this input with these very options");
       const auto& s = stress->second[i];
       const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
       mises[node] = std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
@@ -327,15 +356,18 @@ class FemRun {
 
   std::string not_reached(const FemAccuracy& a) const {
     char text[240];
-    std::snprintf(text, sizeof text, "the accuracy of %.3g %% was not reached: %.3g %% in set %s on the last of %zu meshes; ", 100 * a.asked_rel, 100 * a.estimate.error_rel,
-                  a.estimate.worst_set.c_str(), a.elements.size());
-    return text + std::string(a.elements.size() < kMostMeshes ? "a finer one would have more than " + std::to_string(most_elements()) + " elements (--yes solves it)"
-                                                             : "begin with smaller edges");
+    std::snprintf(text, sizeof text,
+                  "the accuracy of %.3g %% was not reached: %.3g %% in set %s on the last of %zu meshes; ",
+                  100 * a.asked_rel, 100 * a.estimate.error_rel, a.estimate.worst_set.c_str(), a.elements.size());
+    return text + std::string(a.elements.size() < kMostMeshes
+                                  ? "a finer one would have more than " + std::to_string(most_elements()) +
+                                        " elements (--yes solves it)"
+                                  : "begin with smaller edges");
   }
   std::size_t most_elements() const { return o_.mesh.mesh.order == 2 ? 150000 : 1000000; }
 
-  /// Solves the load case on the mesh, on its tetrahedra cut into eight, and once more, until what changes is small enough. The last
-  /// model is the one that is written.
+  /// Solves the load case on the mesh, on its tetrahedra cut into eight, and once more, until what changes is small
+  /// enough. The last model is the one that is written.
   FemAccuracy refine_until_accurate(MeshProduct& product, Built& built) {
     FemAccuracy out;
     out.asked_rel = *o_.accuracy_rel;
@@ -343,14 +375,20 @@ class FemRun {
     for (;;) {
       const SolverModel& model = built.model;
       for (const LoadStep& s : model.sets.steps)
-        if (s.large_displacements) fail_usage("--accuracy is for steps of small displacements", s.name, "leave --accuracy or large_displacements out");
-      if (model.sets.has_contact()) fail_usage("--accuracy is for bodies that are joined, not for contact", "--accuracy", "tie the parts, or leave --accuracy out");
+        if (s.large_displacements)
+          fail_usage("--accuracy is for steps of small displacements", s.name,
+                     "leave --accuracy or large_displacements out");
+      if (model.sets.has_contact())
+        fail_usage("--accuracy is for bodies that are joined, not for contact", "--accuracy",
+                   "tie the parts, or leave --accuracy out");
       SolverModel first = model;  // its first static step alone
-      const LoadStep step = *std::find_if(first.sets.steps.begin(), first.sets.steps.end(), [](const LoadStep& s) { return s.analysis == Analysis::statics; });
+      const LoadStep step = *std::find_if(first.sets.steps.begin(), first.sets.steps.end(),
+                                          [](const LoadStep& s) { return s.analysis == Analysis::statics; });
       first.sets.steps = {step};
       MeshWriteOptions write = o_.mesh.write;
       const auto begin = std::chrono::steady_clock::now();
-      const std::vector<Vec3> moved = solve_with_calculix(first, write, o_.mesh.mesh.threads, o_.mesh.mesh.fill.timeout_s);
+      const std::vector<Vec3> moved =
+          solve_with_calculix(first, write, o_.mesh.mesh.threads, o_.mesh.mesh.fill.timeout_s);
       out.solve_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
       out.elements.push_back(model.mesh.tets.size());
       measures.push_back(recover_stress(first, moved));
@@ -358,7 +396,9 @@ class FemRun {
         out.estimate = estimate_error(measures, o_.mesh.mesh.order);
         out.reached = out.estimate.error_rel <= out.asked_rel;
       }
-      if (out.reached || measures.size() == kMostMeshes || (!o_.mesh.mesh.many_tets && measures.size() > 1 && 8 * model.mesh.tets.size() > most_elements())) return out;
+      if (out.reached || measures.size() == kMostMeshes ||
+          (!o_.mesh.mesh.many_tets && measures.size() > 1 && 8 * model.mesh.tets.size() > most_elements()))
+        return out;
       product.mesh = refine_tets(std::move(product.mesh), 1);
       ++times_cut_;
       built = build(product);
@@ -383,11 +423,14 @@ class FemRun {
     if (image_) {
       for (const Warning& w : image_->warnings) out.warnings.push_back(w);
       if (product.mesh.space == Space::none)
-        fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image, "give labels that carry their place in the world");
+        fail_usage("an image cannot be mapped onto a mesh without anatomical axes", "--image " + o_.image,
+                   "give labels that carry their place in the world");
     }
     out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr);
     for (const Warning& w : out.materials.warnings) out.warnings.push_back(w);
-    if (!plan_) out.warnings.push_back({WarningCode::materials, "", "no --materials: decks that need materials carry placeholders (E = 1 MPa)"});
+    if (!plan_)
+      out.warnings.push_back(
+          {WarningCode::materials, "", "no --materials: decks that need materials carry placeholders (E = 1 MPa)"});
     model.sets.quality = element_quality(model.mesh).scaled_jacobian;
     if (plan_) apply_load_case(model, plan_->load_case, o_.materials);
     JoinOptions join;
@@ -397,8 +440,10 @@ class FemRun {
     join_parts(model, join);
     check_supports(model, o_.materials);
     if (model.mesh.mid.empty() && !model.sets.steps.empty())
-      out.warnings.push_back({WarningCode::element_order, "", "linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by a quarter in the middle of a coarse mesh): "
-                                "take --order 2 for figures that are to be relied on"});
+      out.warnings.push_back({WarningCode::element_order, "",
+                              "linear tetrahedra answer too stiffly, and their stresses are too low where it bends (by "
+                              "a quarter in the middle of a coarse mesh): "
+                              "take --order 2 for figures that are to be relied on"});
     return out;
   }
 
@@ -460,7 +505,7 @@ class FemRun {
   Monitor& progress_;
   std::optional<MaterialPlan> plan_;
   std::optional<IntensityVolume> image_;
-  int times_cut_ = 0;  // by --accuracy, beyond --refine
+  int times_cut_ = 0;                                   // by --accuracy, beyond --refine
   std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
   std::vector<LabelInfo> voids_;                        // that the mesh names
   Space written_ = Space::lps;
@@ -468,6 +513,8 @@ class FemRun {
 
 }  // namespace
 
-RunReport run_fem(const FemRunOptions& options, Monitor& progress) { return FemRun(options, progress).run(); }
+RunReport run_fem(const FemRunOptions& options, Monitor& progress) {
+  return FemRun(options, progress).run();
+}
 
 }  // namespace stackmesh

@@ -28,7 +28,8 @@ void choose_caps(const InputOptions& options, Input& input) {
 std::vector<LabelInfo> labels_of(const std::vector<LabelContours>& contours) {
   std::vector<LabelInfo> labels;
   for (const LabelContours& f : contours) labels.push_back({f.label, f.name, f.colour});
-  std::stable_sort(labels.begin(), labels.end(), [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
   return labels;
 }
 
@@ -37,7 +38,8 @@ void read_contours(const InputOptions& options, Input& input) {
     fail_usage("--spacing is for PNG/TIFF slices", options.paths[0], "leave it out: contour files are in mm");
   std::vector<LabelContours> files;
   for (const std::string& path : options.paths) {
-    if (!is_contour_input(path)) fail_usage("a contour file cannot be mixed with other input", path, "give .cnt files only");
+    if (!is_contour_input(path))
+      fail_usage("a contour file cannot be mixed with other input", path, "give .cnt files only");
     files.push_back(read_contour_file(path));
   }
   // Files that only have a name get the free numbers in order; several bare files count up.
@@ -97,7 +99,8 @@ void read_volume(const InputOptions& options, Input& input) {
   if (!options.names.empty()) apply_label_table(read_label_table(options.names), volume.labels);
   std::vector<std::size_t> keep = LabelTable(volume).resolve(options.labels);
   for (std::size_t& k : keep) ++k;  // behind the background
-  if (options.merge || keep.size() + 1 < volume.labels.size()) volume = select_labels(std::move(volume), keep, options.merge);
+  if (options.merge || keep.size() + 1 < volume.labels.size())
+    volume = select_labels(std::move(volume), keep, options.merge);
   input.labels.assign(volume.labels.begin() + 1, volume.labels.end());
   input.anatomical = volume.anatomical;
   input.volume = std::move(volume);
@@ -106,7 +109,8 @@ void read_volume(const InputOptions& options, Input& input) {
 /// Drawn contours in memory.
 void take_contours(const InputOptions& options, Input& input) {
   input.kind = "contours";
-  for (const std::size_t k : LabelTable(*options.contours).resolve(options.labels)) input.contours.push_back((*options.contours)[k]);
+  for (const std::size_t k : LabelTable(*options.contours).resolve(options.labels))
+    input.contours.push_back((*options.contours)[k]);
 }
 
 /// The structure set that one path is, or whose folder it is; "" where there is none.
@@ -116,7 +120,8 @@ std::string structure_set_in(const std::vector<std::string>& paths) {
   return content.structure_sets.empty() ? "" : label_object(content, paths[0]);
 }
 
-/// Voids are read beside the labels that were requested; where drawn ones overlap they go first, as a cavity lies in its wall.
+/// Voids are read beside the labels that were requested; where drawn ones overlap they go first, as a cavity lies in
+/// its wall.
 InputOptions with_voids(InputOptions options) {
   if (options.voids.empty()) return options;
   if (!options.labels.empty()) options.labels = options.voids + "," + options.labels;
@@ -127,7 +132,9 @@ std::set<Label> resolve_voids(const std::string& text, const std::vector<LabelIn
   std::set<Label> voids;
   if (text.empty()) return voids;
   for (const Label l : LabelTable(labels).numbers(text, "--void")) voids.insert(l);
-  if (voids.size() == labels.size()) fail_usage("every label is a void: nothing is left to be filled", "--void " + text, "name the labels that only bound others");
+  if (voids.size() == labels.size())
+    fail_usage("every label is a void: nothing is left to be filled", "--void " + text,
+               "name the labels that only bound others");
   return voids;
 }
 
@@ -167,7 +174,8 @@ Input read_input(const InputOptions& asked) {
   if (options.contours) take_contours(options, input);
   else if (options.volume) read_volume(options, input);
   else if (is_contour_input(options.paths[0])) read_contours(options, input);
-  else if (const std::string file = structure_set_in(options.paths); !file.empty()) read_structures(options, file, input);
+  else if (const std::string file = structure_set_in(options.paths); !file.empty())
+    read_structures(options, file, input);
   else read_volume(options, input);
   if (!input.volume) {
     input.labels = labels_of(input.contours);
@@ -207,12 +215,16 @@ Stack drawn_sections(Input& input) {
 void empty_voids(Stack& stack, const std::set<Label>& voids) {
   if (voids.empty()) return;
   std::vector<LabelInfo>& labels = stack.labels;
-  labels.erase(std::remove_if(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return voids.count(l.number) > 0; }), labels.end());
+  labels.erase(
+      std::remove_if(labels.begin() + 1, labels.end(), [&](const LabelInfo& l) { return voids.count(l.number) > 0; }),
+      labels.end());
   for (Section& s : stack.sections) {
     for (SectionEdge& e : s.edges)
       for (Label* side : {&e.left, &e.right})
         if (voids.count(*side) > 0) *side = 0;
-    s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
+    s.edges.erase(
+        std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }),
+        s.edges.end());
   }
 }
 

@@ -18,19 +18,24 @@ namespace stackmesh {
 
 /// What to read, and which labels of it.
 struct InputOptions {
-  std::vector<std::string> paths;  ///< one volume, DICOM file, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
-  std::shared_ptr<const LabelVolume> volume;                     ///< in place of paths: labels in memory
-  std::shared_ptr<const std::vector<LabelContours>> contours;    ///< in place of paths: drawn contours in memory, every label numbered
-  std::string memory_name;                                       ///< what messages and reports call what is in memory
+  /// one volume, DICOM file, folder or glob; or one or more .cnt files or LABEL=FILE.cnt pairs
+  std::vector<std::string> paths;
+  std::shared_ptr<const LabelVolume> volume;  ///< in place of paths: labels in memory
+  /// in place of paths: drawn contours in memory, every label numbered
+  std::shared_ptr<const std::vector<LabelContours>> contours;
+  std::string memory_name;                          ///< what messages and reports call what is in memory
   std::optional<std::array<double, 3>> spacing_mm;  ///< for PNG/TIFF slices
-  std::string labels;                               ///< "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
-  std::string series;                               ///< DICOM: series instance UID where a folder holds several
-  bool allow_outside = false;                       ///< a detached header may name data files outside of its folder
-  std::string voids;                                ///< labels that bound the others and are not filled, as `labels`; they are read whatever that says
-  bool merge = false;                               ///< selected labels become one
-  Caps caps = Caps::automatic;                      ///< how drawn labels end: other labels go on beside them
+  /// "1,4,7-9,femur_left"; empty: all; its order is the priority where drawn labels overlap
+  std::string labels;
+  std::string series;          ///< DICOM: series instance UID where a folder holds several
+  bool allow_outside = false;  ///< a detached header may name data files outside of its folder
+  /// labels that bound the others and are not filled, as `labels`; they are read whatever that says
+  std::string voids;
+  bool merge = false;           ///< selected labels become one
+  Caps caps = Caps::automatic;  ///< how drawn labels end: other labels go on beside them
   std::vector<std::pair<std::string, LabelEndCaps>> label_caps;  ///< by name or number
-  std::string names;                                ///< label table (image/read_label_table.h) that names labels; empty: none
+  /// label table (image/read_label_table.h) that names labels; empty: none
+  std::string names;
 };
 
 /// The input as read: a volume, or contours and how they are to become sections.
@@ -38,7 +43,7 @@ struct Input {
   std::optional<LabelVolume> volume;
   std::vector<LabelContours> contours;  ///< one entry a label
   ContourStackOptions drawn;
-  bool anatomical = false;        ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
+  bool anatomical = false;  ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
   std::string path, kind;
   std::vector<LabelInfo> labels;  ///< without the background
   std::set<Label> voids;          ///< those of them that are not filled
@@ -48,14 +53,16 @@ struct Input {
 /// Reads the input and keeps the labels that were requested. @throws Error(input), Error(usage)
 Input read_input(const InputOptions& options);
 
-/// The sections that the contours make; what was odd with them goes to the input's warnings. @throws as sections_from_contours()
+/// The sections that the contours make; what was odd with them goes to the input's warnings. @throws as
+/// sections_from_contours()
 Stack drawn_sections(Input& input);
 
 /// Makes background of the voids: what a mesh that leaves them empty is judged against.
 void empty_voids(Input& input);
 void empty_voids(Stack& stack, const std::set<Label>& voids);
 
-/// Puts a label volume that is stored finer than it was made onto the grid on which it was made, with a warning that says so.
+/// Puts a label volume that is stored finer than it was made onto the grid on which it was made, with a warning that
+/// says so.
 /// @return its voxels there, or as they are stored where nothing tells otherwise, mm
 std::array<double, 3> reduce_to_true_grid(Input& input, int threads);
 

@@ -25,7 +25,8 @@ namespace {
 /// The input of a run, its mesh, and what is written of it.
 class MeshRun {
  public:
-  MeshRun(const MeshRunOptions& options, Monitor& progress, const ModelStage& model) : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
+  MeshRun(const MeshRunOptions& options, Monitor& progress, const ModelStage& model)
+      : o_(options), model_(model), clock_(progress, report_.stages), progress_(progress) {}
 
   RunReport run(const LabelsStage& labels, const MadeStage& made) {
     const CancelScope scope(&progress_);
@@ -70,7 +71,8 @@ class MeshRun {
     report_.input.kind = input_.kind;
     const bool anatomical = input_.anatomical;
     if (o_.space == "ras" && !anatomical)
-      fail_usage("--space ras needs an input with anatomical axes", input_.path, "leave --space out: coordinates are kept as they are");
+      fail_usage("--space ras needs an input with anatomical axes", input_.path,
+                 "leave --space out: coordinates are kept as they are");
     written_ = !anatomical ? Space::none : o_.space == "ras" ? Space::ras : Space::lps;
     report_.input.space = to_text(written_);
     add_label_rows(report_, input_.labels);
@@ -104,7 +106,8 @@ class MeshRun {
   }
 
   LabelMesh mesh_of_input(const MeshOptions& options) {
-    if (!input_.volume) return mesh_sections(clock_.run("contours", [&] { return drawn_sections(input_); }), options, progress_);
+    if (!input_.volume)
+      return mesh_sections(clock_.run("contours", [&] { return drawn_sections(input_); }), options, progress_);
     if (wants_fidelity()) return mesh_labels(*input_.volume, options, progress_);
     return mesh_labels(std::move(*input_.volume), options, progress_);
   }
@@ -142,9 +145,12 @@ class MeshRun {
     report_.surface = mesh_.surface_check;
     report_.volume = mesh_.tets_check;
     report_.layers = mesh_.layers;
-    report_.closure = mesh_.closure == Closure::verified ? "verified" : mesh_.closure == Closure::failed ? "failed" : "skipped";
+    report_.closure = mesh_.closure == Closure::verified ? "verified"
+                      : mesh_.closure == Closure::failed ? "failed"
+                                                         : "skipped";
     for (LabelReport& row : report_.labels) {
-      if (const auto v = mesh_.input_volume_mm3.find(row.label); v != mesh_.input_volume_mm3.end()) row.input_volume_mm3 = v->second;
+      if (const auto v = mesh_.input_volume_mm3.find(row.label); v != mesh_.input_volume_mm3.end())
+        row.input_volume_mm3 = v->second;
       const auto caps = mesh_.stitched.caps.find(row.label);
       if (caps == mesh_.stitched.caps.end()) continue;
       row.cap_low = caps->second.low;
@@ -153,13 +159,17 @@ class MeshRun {
   }
 
   /// The labels as they were meshed; null of contours.
-  const LabelVolume* labels() const { return mesh_.changed_labels ? &*mesh_.changed_labels : input_.volume ? &*input_.volume : nullptr; }
+  const LabelVolume* labels() const {
+    return mesh_.changed_labels ? &*mesh_.changed_labels : input_.volume ? &*input_.volume : nullptr;
+  }
 
   void judge() {
     if (wants_fidelity() && labels() != nullptr) judge_fidelity();
     fill_label_rows(report_, fidelity_.empty() ? nullptr : &fidelity_);
     for (const LabelReport& row : report_.labels)
-      if (!row.closed) warn({WarningCode::not_closed, "label " + std::to_string(row.label), "label " + std::to_string(row.label) + " has no closed surface"});
+      if (!row.closed)
+        warn({WarningCode::not_closed, "label " + std::to_string(row.label),
+              "label " + std::to_string(row.label) + " has no closed surface"});
     if (!o_.reports.empty() || o_.full_report) give_verdicts();
   }
 
@@ -183,9 +193,12 @@ class MeshRun {
     fidelity_ = check_fidelity(mesh_.surface, *labels(), options);
     for (const LabelFidelity& f : fidelity_)
       if (f.missing_components > 0)
-        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label), std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) + " components are missing"));
+        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label),
+                        std::to_string(f.missing_components) + " of " + std::to_string(f.input_components) +
+                            " components are missing"));
       else if (!f.components_match)
-        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label), "the surface's pieces do not match the input's components one to one"));
+        lost(warning_at(WarningCode::pieces_lost, "label " + std::to_string(f.label),
+                        "the surface's pieces do not match the input's components one to one"));
   }
 
   void lost(const Warning& w) {
@@ -231,7 +244,9 @@ class MeshRun {
         write_surface(files_, path, mesh_.surface, write_options());
         if (ends_with(path, ".stl")) check_rounded(path);
       } else if (!model_) {
-        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty()) warn(warning_at(WarningCode::format_loss, path, "the format has no pyramids; wedges and pyramids are divided into tetrahedra"));
+        if (ends_with(path, ".mesh") && !mesh_.tets->wedges.empty())
+          warn(warning_at(WarningCode::format_loss, path,
+                          "the format has no pyramids; wedges and pyramids are divided into tetrahedra"));
         write_volume(files_, path, *mesh_.tets, write_options());
       }
     }
@@ -261,8 +276,9 @@ class MeshRun {
     check.threads = o_.mesh.threads;
     const SurfaceCheck s = check_surface(rounded, check);
     if (s.self_intersections > 0)
-      warn(warning_at(WarningCode::format_loss, path, "rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
-           " pairs of triangles touch or cross; the other formats keep the checked surface"));
+      warn(warning_at(WarningCode::format_loss, path,
+                      "rounding to STL's 32-bit coordinates makes " + std::to_string(s.self_intersections) +
+                          " pairs of triangles touch or cross; the other formats keep the checked surface"));
   }
 
   void draw() {
@@ -306,7 +322,8 @@ class MeshRun {
 
 }  // namespace
 
-RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model, const LabelsStage& labels, const MadeStage& made) {
+RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model, const LabelsStage& labels,
+                   const MadeStage& made) {
   return MeshRun(options, progress, model).run(labels, made);
 }
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/monitor.h"
 #include "base/atomic_file.h"
+#include "base/monitor.h"
 #include "mesh/mesh.h"
 #include "meshio/write_mesh.h"
 #include "pipeline/input.h"
@@ -18,20 +18,20 @@ namespace stackmesh {
 
 struct MeshRunOptions {
   InputOptions input;
-  MeshOptions mesh;                               ///< voids, name and values per label are set by the run
-  std::vector<std::pair<std::string, LabelEndCaps>> label_caps_text;   ///< by the label's number or name
-  std::vector<std::pair<std::string, double>> label_edges_text;        ///< edge length, mm
-  std::vector<std::pair<std::string, double>> label_volumes_text;      ///< largest tetrahedron, mm3
-  LayerTexts layers;                              ///< of wedges, under the outer faces of labels
-  std::string space = "lps";                      ///< "lps" or "ras"
-  std::vector<std::string> names_outputs;         ///< .json files for the labels' numbers, names and colours
-  std::vector<std::string> outputs, reports;      ///< file names; the ending gives the format
-  MeshWriteOptions write;                         ///< space and labels are set by the run
-  bool strict = false;                            ///< a lost detail is an error
-  bool full_report = false;                       ///< fidelity and verdicts also where no report is written
+  MeshOptions mesh;  ///< voids, name and values per label are set by the run
+  std::vector<std::pair<std::string, LabelEndCaps>> label_caps_text;  ///< by the label's number or name
+  std::vector<std::pair<std::string, double>> label_edges_text;       ///< edge length, mm
+  std::vector<std::pair<std::string, double>> label_volumes_text;     ///< largest tetrahedron, mm3
+  LayerTexts layers;                                                  ///< of wedges, under the outer faces of labels
+  std::string space = "lps";                                          ///< "lps" or "ras"
+  std::vector<std::string> names_outputs;     ///< .json files for the labels' numbers, names and colours
+  std::vector<std::string> outputs, reports;  ///< file names; the ending gives the format
+  MeshWriteOptions write;                     ///< space and labels are set by the run
+  bool strict = false;                        ///< a lost detail is an error
+  bool full_report = false;                   ///< fidelity and verdicts also where no report is written
   std::string command = "mesh", version;
   std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report
-  std::vector<Warning> notes;                     ///< warnings of the caller, for the report
+  std::vector<Warning> notes;                                     ///< warnings of the caller, for the report
 };
 
 /// Takes the place of writing volume files: gets the mesh, adds to the report, writes to the files.
@@ -42,18 +42,20 @@ using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
 
 /// The mesh that a run has made, as it is written.
 struct MadeMesh {
-  InterfaceComplex surface;      ///< what write_surface() takes, in the space that was written
-  std::optional<TetMesh> tets;   ///< what write_volume() takes
+  InterfaceComplex surface;     ///< what write_surface() takes, in the space that was written
+  std::optional<TetMesh> tets;  ///< what write_volume() takes
   MeshWriteOptions write;
-  bool has_voids = false;        ///< then `surface` is what write.per_label asked for, and not the other form
+  bool has_voids = false;  ///< then `surface` is what write.per_label asked for, and not the other form
 };
 
 /// Is given the mesh of a run that succeeded, in place of its being dropped.
 using MadeStage = std::function<void(MadeMesh made)>;
 
-/// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write. Everything
-/// that is written appears whole or not at all. With `model`, the verified volume goes there instead of into files.
+/// Slice stack to verified surface and volume mesh: read, contours, stitch, enhance, volume, validate, write.
+/// Everything that is written appears whole or not at all. With `model`, the verified volume goes there instead of into
+/// files.
 /// @throws Error: input, output, usage; no_result after the report (and the offending triangles) were written.
-RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model = {}, const LabelsStage& labels = {}, const MadeStage& made = {});
+RunReport run_mesh(const MeshRunOptions& options, Monitor& progress, const ModelStage& model = {},
+                   const LabelsStage& labels = {}, const MadeStage& made = {});
 
 }  // namespace stackmesh

@@ -36,7 +36,8 @@ void add_files(const std::string& given, std::vector<std::string>& files) {
   std::error_code none;
   std::string path = given;
   const std::size_t equals = path.find('=');
-  if (!fs::exists(path, none) && equals != std::string::npos && fs::exists(path.substr(equals + 1), none)) path = path.substr(equals + 1);
+  if (!fs::exists(path, none) && equals != std::string::npos && fs::exists(path.substr(equals + 1), none))
+    path = path.substr(equals + 1);
   if (fs::is_regular_file(path, none)) {
     files.push_back(path);
     const std::string key = ends_with(path, ".mhd") ? "ElementDataFile" : ends_with(path, ".nhdr") ? "data file" : "";
@@ -105,7 +106,8 @@ Provenance find_provenance(const std::vector<std::string>& input_paths) {
   p.system = first_value("/etc/os-release", "PRETTY_NAME");
   p.cores = static_cast<int>(std::thread::hardware_concurrency());
   struct sysinfo info;
-  if (::sysinfo(&info) == 0) p.memory_gib = std::round(static_cast<double>(info.totalram) * info.mem_unit / (1 << 30) * 10) / 10;
+  if (::sysinfo(&info) == 0)
+    p.memory_gib = std::round(static_cast<double>(info.totalram) * info.mem_unit / (1 << 30) * 10) / 10;
   const std::time_t now = std::time(nullptr);
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));

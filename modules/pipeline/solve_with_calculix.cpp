@@ -29,7 +29,8 @@ struct Folder {
   std::string path;
   Folder() {
     path = (std::filesystem::temp_directory_path() / "stackmesh_ccx_XXXXXX").string();
-    if (::mkdtemp(path.data()) == nullptr) fail_output("no folder for the solver can be made", path, "set TMPDIR to a folder that you may write to");
+    if (::mkdtemp(path.data()) == nullptr)
+      fail_output("no folder for the solver can be made", path, "set TMPDIR to a folder that you may write to");
   }
   ~Folder() {
     std::error_code ignored;
@@ -58,12 +59,15 @@ int run(const std::string& folder, int threads, double timeout_s) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (folder + "/log").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (folder + "/log").c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0600);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   std::vector<std::string> variables;
   for (char** v = environ; *v != nullptr; ++v)
     if (std::string(*v).rfind("OMP_NUM_THREADS=", 0) != 0) variables.push_back(*v);
-  variables.push_back("OMP_NUM_THREADS=" + std::to_string(std::max(1, threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency()))));
+  variables.push_back(
+      "OMP_NUM_THREADS=" +
+      std::to_string(std::max(1, threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency()))));
   std::vector<char*> environment, arguments;
   for (std::string& v : variables) environment.push_back(v.data());
   environment.push_back(nullptr);
@@ -107,7 +111,8 @@ bool has_calculix() {
   return false;
 }
 
-std::vector<Vec3> solve_with_calculix(const SolverModel& model, const MeshWriteOptions& write, int threads, double timeout_s) {
+std::vector<Vec3> solve_with_calculix(const SolverModel& model, const MeshWriteOptions& write, int threads,
+                                      double timeout_s) {
   const Folder folder;
   {
     AtomicFiles files;
@@ -115,7 +120,8 @@ std::vector<Vec3> solve_with_calculix(const SolverModel& model, const MeshWriteO
     files.commit();
   }
   const int status = run(folder.path, threads, timeout_s);
-  if (status < 0) fail("took longer than the " + std::to_string(static_cast<int>(timeout_s)) + " s of --timeout", folder.path);
+  if (status < 0)
+    fail("took longer than the " + std::to_string(static_cast<int>(timeout_s)) + " s of --timeout", folder.path);
   if (status != 0 || !std::filesystem::exists(folder.path + "/model.frd")) fail("found no solution", folder.path);
   const FrdResult result = read_frd(folder.path + "/model.frd");
   const auto field = result.fields.find("DISP");

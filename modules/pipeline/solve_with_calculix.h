@@ -13,6 +13,7 @@ bool has_calculix();
 /// @param timeout_s after which it is ended
 /// @return the displacement of each node, mm, at the end of the last step
 /// @throws Error(no_result) where CalculiX fails or takes longer, with its last words
-std::vector<Vec3> solve_with_calculix(const SolverModel& model, const MeshWriteOptions& write, int threads, double timeout_s);
+std::vector<Vec3> solve_with_calculix(const SolverModel& model, const MeshWriteOptions& write, int threads,
+                                      double timeout_s);
 
 }  // namespace stackmesh

@@ -57,12 +57,13 @@ std::vector<std::string> turn_as_a_whole(InterfaceComplex& surface, TetMesh& tet
   std::size_t negative = 0, positive = 0;
   for (const auto& t : tets.tets) {
     const int sign = exact_orientation(tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]);
-    negative += sign < 0, positive += sign > 0;
+    negative += sign<0, positive += sign> 0;
   }
   if (negative > positive) {
     for (std::size_t t = 0; t < tets.tets.size(); ++t) turn_round(tets, t);
     notes.push_back("most tetrahedra (" + std::to_string(negative) + " of " + std::to_string(tets.tets.size()) +
-                    ") number their nodes the other way round, as a mirrored frame does; all were turned, and the rest counts as inverted");
+                    ") number their nodes the other way round, as a mirrored frame does; all were turned, and the rest "
+                    "counts as inverted");
   }
   surface.points = tets.points;
   surface.triangles = faces_of_tets(tets);
@@ -70,7 +71,8 @@ std::vector<std::string> turn_as_a_whole(InterfaceComplex& surface, TetMesh& tet
     tets.faces = surface.triangles;
   } else if (run_against(tets.faces, surface.triangles)) {
     swap_corners(tets.faces);
-    notes.push_back("the interface triangles run against the tetrahedra, as in a mirrored frame: all were turned round");
+    notes.push_back(
+        "the interface triangles run against the tetrahedra, as in a mirrored frame: all were turned round");
   }
   return notes;
 }

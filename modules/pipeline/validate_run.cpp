@@ -9,14 +9,14 @@
 #include "base/cancel.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "base/stage_clock.h"
 #include "base/text.h"
 #include "base/warning.h"
 #include "model/space.h"
 #include "pipeline/complete_report.h"
-#include "pipeline/provenance.h"
 #include "pipeline/output_files.h"
+#include "pipeline/provenance.h"
 #include "pipeline/report_names.h"
-#include "base/stage_clock.h"
 #include "pipeline/turn_as_a_whole.h"
 #include "report/html_report.h"
 #include "validate/defects.h"
@@ -42,7 +42,7 @@ std::string plain(const std::string& name) {
 /// What is read once for all meshes.
 struct Against {
   Input input;
-  Stack sections;  // of contours
+  Stack sections;                              // of contours
   std::array<int, 3> stored_size = {0, 0, 0};  // of a volume, as its file has it
   std::array<double, 3> stored_spacing_mm = {0, 0, 0};
   Frame stored_frame;  // from the centre of its first voxel
@@ -93,10 +93,13 @@ class ValidateRun {
     for (char& c : name)
       if (c == '.') c = '_';
     std::string folder = o_.defects_folder;
-    if (folder.empty() && !o_.reports.empty() && o_.reports[0].rfind('/') != std::string::npos) folder = o_.reports[0].substr(0, o_.reports[0].rfind('/'));
+    if (folder.empty() && !o_.reports.empty() && o_.reports[0].rfind('/') != std::string::npos)
+      folder = o_.reports[0].substr(0, o_.reports[0].rfind('/'));
     const std::string path = (folder.empty() ? "" : folder + "/") + name + ".defects.vtp";
     write_surface(files, path, part);
-    report.warnings.push_back({WarningCode::file_written, path, "the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1"});
+    report.warnings.push_back(
+        {WarningCode::file_written, path,
+         "the triangles of the defects are in " + path + ": label_below is the number of the defect, from 1"});
   }
 
  private:
@@ -107,7 +110,8 @@ class ValidateRun {
     JudgedMesh m;
     m.path = path, m.format = file_.format;
     m.vertices = file_.points.size() + file_.merged_points;
-    m.triangles = file_.triangles.size() + file_.dropped_triangles, m.tets = file_.tets.size(), m.wedges = file_.wedges.size();
+    m.triangles = file_.triangles.size() + file_.dropped_triangles, m.tets = file_.tets.size(),
+    m.wedges = file_.wedges.size();
     m.order = file_.midside.empty() ? 1 : 2;
     if (!o_.reports.empty()) m.sha256 = sha256_of_file(path);
     report_.mesh = std::move(m);
@@ -123,7 +127,8 @@ class ValidateRun {
   }
 
   void turn_round() {
-    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_)) warn({WarningCode::mesh_converted, file_.path, note});
+    for (const std::string& note : turn_as_a_whole(surface_, tets_, has_faces_))
+      warn({WarningCode::mesh_converted, file_.path, note});
   }
 
   // ---- frame
@@ -139,14 +144,20 @@ class ValidateRun {
     lies_in(known ? Space::lps : Space::none);
     if (against_ && !anatomical) {
       m.space_reason = "the input has no anatomy: coordinates are taken as they are";
-      if (o_.mesh_space == "ras") fail_usage("--mesh-space ras needs an input with anatomical axes", against_->input.path, "leave --mesh-space out");
+      if (o_.mesh_space == "ras")
+        fail_usage("--mesh-space ras needs an input with anatomical axes", against_->input.path,
+                   "leave --mesh-space out");
       if (against_->input.volume && overlap(Frame{}) == 0) no_overlap("as it is", {});
       return;
     }
-    const std::optional<Space> told = o_.mesh_space == "lps" ? std::optional(Space::lps) : o_.mesh_space == "ras" ? std::optional(Space::ras) : file_.space;
+    const std::optional<Space> told = o_.mesh_space == "lps"   ? std::optional(Space::lps)
+                                      : o_.mesh_space == "ras" ? std::optional(Space::ras)
+                                                               : file_.space;
     if (!against_) {
       lies_in(told.value_or(Space::none));
-      m.space_reason = o_.mesh_space != "auto" ? "as told by --mesh-space" : told ? "the file says so" : "the file does not say, and there are no labels to compare with";
+      m.space_reason = o_.mesh_space != "auto" ? "as told by --mesh-space"
+                       : told                  ? "the file says so"
+                                               : "the file does not say, and there are no labels to compare with";
       return;
     }
     if (!against_->input.volume) {
@@ -162,8 +173,9 @@ class ValidateRun {
       if (dice < 0.5) {
         const double other = overlap(between(is_ras ? Space::lps : Space::ras, Space::lps));
         if (other > 0.5 && other > 2 * dice) {
-          wrong_frame_ = "the mesh is taken as " + std::string(is_ras ? "RAS" : "LPS") + " because " + who + " so, but as " + (is_ras ? "LPS" : "RAS") +
-                         " it would fit: Dice " + percent(other) + " instead of " + percent(dice);
+          wrong_frame_ = "the mesh is taken as " + std::string(is_ras ? "RAS" : "LPS") + " because " + who +
+                         " so, but as " + (is_ras ? "LPS" : "RAS") + " it would fit: Dice " + percent(other) +
+                         " instead of " + percent(dice);
         } else if (dice == 0) {
           no_overlap(is_ras ? "as RAS" : "as LPS", is_ras ? "LPS: " + percent(other) : "RAS: " + percent(other));
         }
@@ -175,21 +187,28 @@ class ValidateRun {
     if (std::max(lps, ras) < 0.5 && take_mirror(std::max(lps, ras))) return;
     if (lps == 0 && ras == 0) no_overlap("neither as LPS nor as RAS", {});
     lies_in(ras > lps ? Space::ras : Space::lps);
-    m.space_reason = "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
-    if (std::abs(lps - ras) < 0.05) warn({WarningCode::frame, file_.path, "the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space"});
+    m.space_reason =
+        "the file does not say; overlap with the labels: Dice " + percent(lps) + " as LPS, " + percent(ras) + " as RAS";
+    if (std::abs(lps - ras) < 0.05)
+      warn({WarningCode::frame, file_.path,
+            "the frame is uncertain (" + m.space_reason + "): tell it with --mesh-space"});
     to_lps();
   }
 
   /// Against drawn contours, which have no voxels to compare with.
   void take_told_frame(const std::optional<Space>& told) {
     lies_in(told.value_or(Space::lps));
-    report_.mesh->space_reason = !told ? "neither the mesh nor the contours say: taken as LPS" : std::string(o_.mesh_space != "auto" ? "--mesh-space tells " : "the file tells ") + (told == Space::ras ? "RAS" : "LPS");
+    report_.mesh->space_reason =
+        !told ? "neither the mesh nor the contours say: taken as LPS"
+              : std::string(o_.mesh_space != "auto" ? "--mesh-space tells " : "the file tells ") +
+                    (told == Space::ras ? "RAS" : "LPS");
     to_lps();
   }
 
   /// Coordinates are indices times spacing, 0 the centre of the first voxel: they are moved to where the voxels lie.
   void take_image_frame(bool anatomical) {
-    if (!against_ || !against_->input.volume) fail_usage("--mesh-space image needs the image", "command line", "name the label volume with --against");
+    if (!against_ || !against_->input.volume)
+      fail_usage("--mesh-space image needs the image", "command line", "name the label volume with --against");
     for (std::vector<Vec3>* points : {&surface_.points, &tets_.points})
       for (Vec3& p : *points) p = against_->stored_frame.to_world(p);
     turn_round();  // axes may mirror
@@ -221,7 +240,10 @@ class ValidateRun {
     const struct {
       const char* text;
       double x, y, z;
-    } mirrors[] = {{"RPS (x negated)", -1, 1, 1}, {"LAS (y negated)", 1, -1, 1}, {"LPI (z negated)", 1, 1, -1}, {"RAI (all negated)", -1, -1, -1}};
+    } mirrors[] = {{"RPS (x negated)", -1, 1, 1},
+                   {"LAS (y negated)", 1, -1, 1},
+                   {"LPI (z negated)", 1, 1, -1},
+                   {"RAI (all negated)", -1, -1, -1}};
     for (const auto& m : mirrors) {
       Frame f;
       f.axes = {Vec3{m.x, 0, 0}, Vec3{0, m.y, 0}, Vec3{0, 0, m.z}};
@@ -230,14 +252,18 @@ class ValidateRun {
       scale(m.x, m.y, m.z);
       mirrored_ = true;
       report_.mesh->space = m.text;
-      report_.mesh->space_reason = "the file does not say; it fits only mirrored (Dice " + percent(dice) + ", at most " + percent(otherwise) + " as LPS or RAS)";
-      wrong_frame_ = "the mesh is a mirror image: it fits the labels only as " + std::string(m.text) + ", Dice " + percent(dice) + "; all else is judged in that frame";
+      report_.mesh->space_reason = "the file does not say; it fits only mirrored (Dice " + percent(dice) +
+                                   ", at most " + percent(otherwise) + " as LPS or RAS)";
+      wrong_frame_ = "the mesh is a mirror image: it fits the labels only as " + std::string(m.text) + ", Dice " +
+                     percent(dice) + "; all else is judged in that frame";
       return true;
     }
     return false;
   }
 
-  double overlap(const Frame& frame) const { return against_->meter ? against_->meter->measure(surface_, frame, 48).dice_of_all() : 0; }
+  double overlap(const Frame& frame) const {
+    return against_->meter ? against_->meter->measure(surface_, frame, 48).dice_of_all() : 0;
+  }
 
   /// Names the usual mistakes that would explain it.
   [[noreturn]] void no_overlap(const std::string& tried, const std::string& other) const {
@@ -250,10 +276,13 @@ class ValidateRun {
     const struct {
       const char* text;
       Frame frame;
-    } guesses[] = {{"it would fit in metres: scale it by 1000", metres}, {"it would fit in the image's own axes and millimetres: add the origin and direction of the labels", image}};
+    } guesses[] = {
+        {"it would fit in metres: scale it by 1000", metres},
+        {"it would fit in the image's own axes and millimetres: add the origin and direction of the labels", image}};
     for (const auto& g : guesses)
       if (overlap(g.frame) > 0.5) hint = g.text;
-    fail_input("the mesh and the labels do not overlap (" + tried + (other.empty() ? "" : "; " + other) + ")", file_.path + " and " + against_->input.path, hint);
+    fail_input("the mesh and the labels do not overlap (" + tried + (other.empty() ? "" : "; " + other) + ")",
+               file_.path + " and " + against_->input.path, hint);
   }
 
   // ---- labels
@@ -280,7 +309,8 @@ class ValidateRun {
     else by_number(of_mesh, to);
     std::string text = source_text();
     for (const auto& [from, target] : to)
-      if (from != target && file_.label_source != LabelSource::none && to.size() < 12) text += ", " + std::to_string(from) + " stands for " + std::to_string(target);
+      if (from != target && file_.label_source != LabelSource::none && to.size() < 12)
+        text += ", " + std::to_string(from) + " stands for " + std::to_string(target);
     report_.mesh->labels = text + matched_;
     rename(to);
     add_label_rows(report_, labels_);
@@ -288,10 +318,14 @@ class ValidateRun {
 
   std::string source_text() const {
     switch (file_.label_source) {
-      case LabelSource::none: return "no labels in the file";
-      case LabelSource::sides: return "labels from " + file_.label_array;
-      case LabelSource::array: return "labels from array '" + file_.label_array + "'";
-      case LabelSource::sets: return "labels from sets";
+      case LabelSource::none:
+        return "no labels in the file";
+      case LabelSource::sides:
+        return "labels from " + file_.label_array;
+      case LabelSource::array:
+        return "labels from array '" + file_.label_array + "'";
+      case LabelSource::sets:
+        return "labels from sets";
     }
     return "";
   }
@@ -310,7 +344,8 @@ class ValidateRun {
     return std::any_of(labels_.begin(), labels_.end(), [&](const LabelInfo& l) { return l.number == label; });
   }
   void keep_only(Label label) {
-    labels_.erase(std::remove_if(labels_.begin(), labels_.end(), [&](const LabelInfo& l) { return l.number != label; }), labels_.end());
+    labels_.erase(std::remove_if(labels_.begin(), labels_.end(), [&](const LabelInfo& l) { return l.number != label; }),
+                  labels_.end());
   }
 
   /// No labels in the file: it stands for the only label that is requested, the one that it fits best, or all together.
@@ -320,7 +355,9 @@ class ValidateRun {
       matched_ = ", it stands for label " + std::to_string(to[1]);
       return;
     }
-    if (!against_->meter) fail_input("the mesh has one surface and the contours have " + std::to_string(labels_.size()) + " labels", file_.path, "say which with --label");
+    if (!against_->meter)
+      fail_input("the mesh has one surface and the contours have " + std::to_string(labels_.size()) + " labels",
+                 file_.path, "say which with --label");
     const LabelOverlap o = against_->meter->measure(surface_);
     std::size_t best = 1;
     for (std::size_t l = 2; l < o.input_centres.size(); ++l)
@@ -329,12 +366,16 @@ class ValidateRun {
     if (all > one) {
       union_ = true;
       to[1] = labels_[0].number;
-      matched_ = ", it stands for all labels together (Dice " + percent(all) + "; best single label " + std::to_string(labels_[best - 1].number) + ": " + percent(one) + ")";
+      matched_ = ", it stands for all labels together (Dice " + percent(all) + "; best single label " +
+                 std::to_string(labels_[best - 1].number) + ": " + percent(one) + ")";
     } else {
       to[1] = labels_[best - 1].number;
-      matched_ = ", it fits label " + std::to_string(to[1]) + " best (Dice " + percent(one) + "; all together " + percent(all) + ")";
+      matched_ = ", it fits label " + std::to_string(to[1]) + " best (Dice " + percent(one) + "; all together " +
+                 percent(all) + ")";
     }
-    warn({WarningCode::labels_matched, file_.path, "the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ + "; --label tells which"});
+    warn({WarningCode::labels_matched, file_.path,
+          "the mesh has one surface and the input " + std::to_string(labels_.size()) + " labels" + matched_ +
+              "; --label tells which"});
     if (!union_) keep_only(to[1]);
   }
 
@@ -348,14 +389,17 @@ class ValidateRun {
     for (const Label l : of_mesh) to[l] = asked(l) ? l : 0;
     forget(unknown);
     if (of_mesh.size() == 1 && labels_.size() > 1) {
-      warn({WarningCode::labels_matched, file_.path, "the mesh has label " + list(of_mesh) + " alone: only that label is judged"});
+      warn({WarningCode::labels_matched, file_.path,
+            "the mesh has label " + list(of_mesh) + " alone: only that label is judged"});
       keep_only(*of_mesh.begin());
     }
   }
 
   /// Labels of the mesh that the input does not have, or that were not requested, are background.
   void forget(const std::set<Label>& unknown) {
-    if (!unknown.empty()) warn({WarningCode::labels_matched, file_.path, "labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown)});
+    if (!unknown.empty())
+      warn({WarningCode::labels_matched, file_.path,
+            "labels of the mesh that are not requested or not in the input are taken as background: " + list(unknown)});
   }
 
   void by_name(const std::set<Label>& of_mesh, std::map<Label, Label>& to) {
@@ -391,9 +435,12 @@ class ValidateRun {
         if (o.dice(m, l) > o.dice(m, best)) best = l;
       const Label target = o.dice(m, best) > 0 ? labels_[best - 1].number : 0;
       to[o.mesh_labels[m]] = target;
-      if (m < 12) text += (m ? ", " : "") + std::to_string(o.mesh_labels[m]) + " as " + std::to_string(target) + " (Dice " + percent(o.dice(m, best)) + ")";
+      if (m < 12)
+        text += (m ? ", " : "") + std::to_string(o.mesh_labels[m]) + " as " + std::to_string(target) + " (Dice " +
+                percent(o.dice(m, best)) + ")";
     }
-    warn({WarningCode::labels_matched, file_.path, why + ": its labels are taken for those that they overlap best: " + text});
+    warn({WarningCode::labels_matched, file_.path,
+          why + ": its labels are taken for those that they overlap best: " + text});
     if (of_mesh.size() == 1 && labels_.size() > 1 && to.begin()->second != 0) keep_only(to.begin()->second);
   }
 
@@ -404,7 +451,9 @@ class ValidateRun {
     };
     const auto apply = [&](std::vector<InterfaceTriangle>& triangles) {
       for (InterfaceTriangle& t : triangles) t.below = of(t.below), t.above = of(t.above);
-      triangles.erase(std::remove_if(triangles.begin(), triangles.end(), [](const InterfaceTriangle& t) { return t.below == t.above; }), triangles.end());
+      triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
+                                     [](const InterfaceTriangle& t) { return t.below == t.above; }),
+                      triangles.end());
     };
     const bool same = std::all_of(to.begin(), to.end(), [](const auto& p) { return p.first == p.second; });
     if (same) return;
@@ -430,7 +479,8 @@ class ValidateRun {
       selected_ = select_labels(*volume, keep, union_);
       if (union_) {
         labels_.assign(selected_->labels.begin() + 1, selected_->labels.end());
-        for (InterfaceTriangle& t : surface_.triangles) t.below = t.below ? labels_[0].number : 0, t.above = t.above ? labels_[0].number : 0;
+        for (InterfaceTriangle& t : surface_.triangles)
+          t.below = t.below ? labels_[0].number : 0, t.above = t.above ? labels_[0].number : 0;
         report_.labels.resize(1);
         report_.labels[0].label = labels_[0].number;
         report_.labels[0].name = "all labels together";
@@ -440,7 +490,8 @@ class ValidateRun {
     const std::vector<std::size_t> counts = count_voxels(*volume);
     for (LabelReport& row : report_.labels)
       for (std::size_t k = 1; k < volume->labels.size(); ++k)
-        if (volume->labels[k].number == row.label) row.input_volume_mm3 = static_cast<double>(counts[k]) * volume->voxel_volume_mm3();
+        if (volume->labels[k].number == row.label)
+          row.input_volume_mm3 = static_cast<double>(counts[k]) * volume->voxel_volume_mm3();
     FidelityOptions options;
     options.threads = o_.threads;
     options.stack_axis = against_->axis;
@@ -465,10 +516,13 @@ class ValidateRun {
   void frame_verdict() {
     Verdict v;
     v.id = "frame", v.title = "Frame", v.status = Status::fail;
-    v.figure = mirrored_ ? "mirrored: " + report_.mesh->space : report_.mesh->space == "ras" ? "taken as RAS, fits as LPS" : "taken as LPS, fits as RAS";
+    v.figure = mirrored_                      ? "mirrored: " + report_.mesh->space
+               : report_.mesh->space == "ras" ? "taken as RAS, fits as LPS"
+                                              : "taken as LPS, fits as RAS";
     v.limit = "must fit";
     v.explanation = wrong_frame_ + ".";
-    const auto at = std::find_if(report_.verdicts.begin(), report_.verdicts.end(), [](const Verdict& o) { return !o.validity; });
+    const auto at =
+        std::find_if(report_.verdicts.begin(), report_.verdicts.end(), [](const Verdict& o) { return !o.validity; });
     report_.verdicts.insert(at, v);
     Defect d;
     d.kind = "wrong_frame";
@@ -490,7 +544,7 @@ class ValidateRun {
   InterfaceComplex surface_;  // in the frame of the labels once it is known
   TetMesh tets_;
   bool has_faces_ = false, union_ = false, mirrored_ = false;
-  std::vector<LabelInfo> labels_;  // of the input that are judged
+  std::vector<LabelInfo> labels_;        // of the input that are judged
   std::optional<LabelVolume> selected_;  // those, where they are not all of the input's
   std::string matched_, wrong_frame_;
   std::vector<LabelFidelity> fidelity_;
@@ -557,7 +611,9 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Monitor& progre
         describe_input(*against, start);
         start.input.files = o.against->paths;
       });
-    if (!o.reports.empty()) clock.run("provenance", [&] { start.provenance = find_provenance(o.against ? o.against->paths : std::vector<std::string>()); });
+    if (!o.reports.empty())
+      clock.run("provenance",
+                [&] { start.provenance = find_provenance(o.against ? o.against->paths : std::vector<std::string>()); });
   }
   std::vector<RunReport> reports;
   std::vector<HtmlPictures> pictures;
@@ -579,7 +635,9 @@ std::vector<RunReport> run_validate(const ValidateRunOptions& o, Monitor& progre
     subjects.push_back({path.substr(path.rfind('/') + 1), &reports[i], &pictures[i]});
   }
   for (const std::string& path : o.reports) {
-    const std::string text = is_html_report(path) ? to_html(subjects) : reports.size() == 1 ? to_json(reports[0]) : to_json(reports);
+    const std::string text = is_html_report(path)  ? to_html(subjects)
+                             : reports.size() == 1 ? to_json(reports[0])
+                                                   : to_json(reports);
     files.write(path, [&](std::FILE* f) { std::fwrite(text.data(), 1, text.size(), f); });
   }
   files.commit();

@@ -5,24 +5,25 @@
 #include <vector>
 
 #include "base/monitor.h"
-#include "sections/extract.h"
 #include "meshio/read_mesh.h"
 #include "pipeline/input.h"
 #include "report/run_report.h"
+#include "sections/extract.h"
 
 namespace stackmesh {
 
 struct ValidateRunOptions {
-  std::vector<std::string> meshes;     ///< files of any program
-  std::optional<InputOptions> against; ///< labels or contours; unset: the meshes are judged alone
+  std::vector<std::string> meshes;      ///< files of any program
+  std::optional<InputOptions> against;  ///< labels or contours; unset: the meshes are judged alone
   StackAxis axis = StackAxis::automatic;
-  bool as_stored = false;              ///< labels that are stored finer than they were made stay as they are stored
-  std::string mesh_space = "auto";     ///< "lps", "ras", "image": indices times spacing, or "auto": the mark in the file, else what overlaps best
+  bool as_stored = false;  ///< labels that are stored finer than they were made stay as they are stored
+  /// "lps", "ras", "image": indices times spacing, or "auto": the mark in the file, else what overlaps best
+  std::string mesh_space = "auto";
   MeshReadOptions read;
-  std::optional<Limits> limits;        ///< unset: the defaults
-  std::vector<std::string> reports;    ///< file names; the ending gives the format
-  bool write_defects = false;          ///< NAME.defects.vtp for each mesh with defects
-  std::string defects_folder;          ///< for those; empty: beside the first report, else the working folder
+  std::optional<Limits> limits;      ///< unset: the defaults
+  std::vector<std::string> reports;  ///< file names; the ending gives the format
+  bool write_defects = false;        ///< NAME.defects.vtp for each mesh with defects
+  std::string defects_folder;        ///< for those; empty: beside the first report, else the working folder
   int threads = 0;
   std::string version;
   std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report

@@ -16,8 +16,8 @@ namespace {
 
 [[noreturn]] void fail_labels(const Section& section, GridPoint p, double sx, double sy) {
   fail_input("contours contradict each other: the labels on two sides of a region differ",
-             "section at z = " + std::to_string(section.z_mm) + " mm near grid point (" +
-                 std::to_string(p.x * sx) + ", " + std::to_string(p.y * sy) + ")",
+             "section at z = " + std::to_string(section.z_mm) + " mm near grid point (" + std::to_string(p.x * sx) +
+                 ", " + std::to_string(p.y * sy) + ")",
              "mend crossing or open contours in this section");
 }
 

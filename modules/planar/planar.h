@@ -49,9 +49,9 @@ struct PlanarEdge {
 /// The triangulated and labelled plane of a slab.
 struct Plane {
   Cdt cdt;
-  std::vector<PlanarVertex> vertices;   // a vertex's info() is its index here
+  std::vector<PlanarVertex> vertices;  // a vertex's info() is its index here
   std::vector<VertexHandle> handles;
-  std::vector<PlanarEdge> edges;        // every edge of both sections once, in a fixed order
+  std::vector<PlanarEdge> edges;  // every edge of both sections once, in a fixed order
 };
 
 /// Builds the plane: both sections' points and edges, then the labels by flooding (paper 3.2.1, 3.2.2).

@@ -58,9 +58,11 @@ bool traverses(const GridSegment& s, GridPoint p) {
       std::min(s.a.y, s.b.y) > p.y)
     return false;
   // In doubled coordinates the pixel's borders are odd and the end points even: no end point lies on a border.
-  const std::int64_t dx = 2 * (static_cast<std::int64_t>(s.b.x) - s.a.x), dy = 2 * (static_cast<std::int64_t>(s.b.y) - s.a.y);
+  const std::int64_t dx = 2 * (static_cast<std::int64_t>(s.b.x) - s.a.x),
+                     dy = 2 * (static_cast<std::int64_t>(s.b.y) - s.a.y);
   if (dx == 0 || dy == 0) return true;
-  const std::int64_t px = 2 * (static_cast<std::int64_t>(p.x) - s.a.x), py = 2 * (static_cast<std::int64_t>(p.y) - s.a.y);
+  const std::int64_t px = 2 * (static_cast<std::int64_t>(p.x) - s.a.x),
+                     py = 2 * (static_cast<std::int64_t>(p.y) - s.a.y);
   const auto side = [&](int ox, int oy) { return dx * (py + oy) - dy * (px + ox); };
   if ((dx > 0) == (dy > 0)) {  // the corners that such a line can graze are both outside the half-open pixel
     const std::int64_t u = side(-1, 1), v = side(1, -1);
@@ -234,9 +236,10 @@ bool compose(const Piece* first, const Piece* last, const Stack& stack, std::siz
     }
   }
   if (!simple || lefts != rights || lefts > 1)
-    fail_input("contours overlap so that labels contradict each other",
-               "section " + std::to_string(section + 1) + " at z = " + std::to_string(stack.sections[section].z_mm) + " mm",
-               "mend the contours so that they do not cross");
+    fail_input(
+        "contours overlap so that labels contradict each other",
+        "section " + std::to_string(section + 1) + " at z = " + std::to_string(stack.sections[section].z_mm) + " mm",
+        "mend the contours so that they do not cross");
   return lefts == 1;
 }
 
@@ -327,7 +330,8 @@ SnapRoundingReport snap_round(Stack& stack, int threads) {
   SnapRoundingReport report;
   for (std::size_t i = 0; i < n; ++i) {
     report.added_vertices += added[i];
-    if (!warnings[i].empty()) report.warnings.push_back({WarningCode::vanished, "section " + std::to_string(i + 1), warnings[i]});
+    if (!warnings[i].empty())
+      report.warnings.push_back({WarningCode::vanished, "section " + std::to_string(i + 1), warnings[i]});
   }
   return report;
 }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/warning.h"
-#include "model/stack.h"
 #include "model/edge_grid.h"
+#include "model/stack.h"
 
 namespace stackmesh {
 

@@ -21,7 +21,8 @@ template <class D>
 double worst_distance(const RunReport& r, std::optional<D> LabelReport::*which, double D::*part) {
   double worst = kNaN;
   for (const LabelReport& l : r.labels)
-    if (l.*which && !std::isnan((*(l.*which)).*part)) worst = std::isnan(worst) ? (*(l.*which)).*part : std::max(worst, (*(l.*which)).*part);
+    if (l.*which && !std::isnan((*(l.*which)).*part))
+      worst = std::isnan(worst) ? (*(l.*which)).*part : std::max(worst, (*(l.*which)).*part);
   return worst;
 }
 
@@ -51,12 +52,15 @@ class Table {
 
  private:
   static std::size_t columns(const std::string& utf8) {
-    return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+    return static_cast<std::size_t>(
+        std::count_if(utf8.begin(), utf8.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
   }
   std::vector<std::vector<std::string>> rows_;
 };
 
-std::string file_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+std::string file_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
 
 }  // namespace
 
@@ -83,9 +87,15 @@ std::vector<ComparisonRow> compare(const std::vector<RunReport>& reports) {
         if (rank(row.values[i]) == rank(best)) row.best.push_back(i);
     rows.push_back(std::move(row));
   };
-  const auto surface = [](auto field) { return [field](const RunReport& r) { return r.surface ? static_cast<double>((*r.surface).*field) : kNaN; }; };
-  const auto volume = [](auto field) { return [field](const RunReport& r) { return r.volume ? static_cast<double>((*r.volume).*field) : kNaN; }; };
-  const auto distance = [](auto which, auto part) { return [which, part](const RunReport& r) { return worst_distance(r, which, part); }; };
+  const auto surface = [](auto field) {
+    return [field](const RunReport& r) { return r.surface ? static_cast<double>((*r.surface).*field) : kNaN; };
+  };
+  const auto volume = [](auto field) {
+    return [field](const RunReport& r) { return r.volume ? static_cast<double>((*r.volume).*field) : kNaN; };
+  };
+  const auto distance = [](auto which, auto part) {
+    return [which, part](const RunReport& r) { return worst_distance(r, which, part); };
+  };
   add("triangles", "triangles", "%.0f", Better::neither, surface(&SurfaceCheck::triangles));
   add("tets", "tetrahedra", "%.0f", Better::neither, volume(&VolumeCheck::tets));
   add("open_edges", "open edges", "%.0f", Better::less, surface(&SurfaceCheck::open_edges));
@@ -111,26 +121,41 @@ std::vector<ComparisonRow> compare(const std::vector<RunReport>& reports) {
   add("wrong_centres_percent", "voxel centres wrong, %", "%.2f", Better::less, [](const RunReport& r) {
     double worst = kNaN;
     for (const LabelReport& l : r.labels)
-      if (l.wrong_centres_share && !std::isnan(*l.wrong_centres_share)) worst = std::isnan(worst) ? 100 * *l.wrong_centres_share : std::max(worst, 100 * *l.wrong_centres_share);
+      if (l.wrong_centres_share && !std::isnan(*l.wrong_centres_share))
+        worst = std::isnan(worst) ? 100 * *l.wrong_centres_share : std::max(worst, 100 * *l.wrong_centres_share);
     return worst;
   });
-  add("band_mean_mm", "outside the band, mean mm", "%.4f", Better::less, distance(&LabelReport::band_distance_mm, &BandDistance::mean));
-  add("band_max_mm", "outside the band, largest mm", "%.3f", Better::less, distance(&LabelReport::band_distance_mm, &BandDistance::max));
-  add("mean_bend_deg", "mean bend, degrees", "%.1f", Better::neither, [](const RunReport& r) { return r.bends ? r.bends->mean_deg : kNaN; });
-  add("bends_above_40_percent", "edges that bend above 40 degrees, %", "%.2f", Better::less, [](const RunReport& r) { return r.bends ? 100 * r.bends->above_40_share : kNaN; });
-  add("distance_mean_mm", "labels to mesh, mean mm", "%.3f", Better::neither, distance(&LabelReport::distance_mm, &Distance::mean));
-  add("distance_p95_mm", "labels to mesh, 95 % mm", "%.3f", Better::neither, distance(&LabelReport::distance_mm, &Distance::p95));
-  add("distance_max_mm", "labels to mesh, largest mm", "%.3f", Better::neither, distance(&LabelReport::distance_mm, &Distance::max));
-  add("reverse_mean_mm", "mesh to labels, mean mm", "%.3f", Better::neither, distance(&LabelReport::reverse_distance_mm, &Distance::mean));
-  add("reverse_p95_mm", "mesh to labels, 95 % mm", "%.3f", Better::neither, distance(&LabelReport::reverse_distance_mm, &Distance::p95));
-  add("reverse_max_mm", "mesh to labels, largest mm", "%.3f", Better::neither, distance(&LabelReport::reverse_distance_mm, &Distance::max));
+  add("band_mean_mm", "outside the band, mean mm", "%.4f", Better::less,
+      distance(&LabelReport::band_distance_mm, &BandDistance::mean));
+  add("band_max_mm", "outside the band, largest mm", "%.3f", Better::less,
+      distance(&LabelReport::band_distance_mm, &BandDistance::max));
+  add("mean_bend_deg", "mean bend, degrees", "%.1f", Better::neither,
+      [](const RunReport& r) { return r.bends ? r.bends->mean_deg : kNaN; });
+  add("bends_above_40_percent", "edges that bend above 40 degrees, %", "%.2f", Better::less,
+      [](const RunReport& r) { return r.bends ? 100 * r.bends->above_40_share : kNaN; });
+  add("distance_mean_mm", "labels to mesh, mean mm", "%.3f", Better::neither,
+      distance(&LabelReport::distance_mm, &Distance::mean));
+  add("distance_p95_mm", "labels to mesh, 95 % mm", "%.3f", Better::neither,
+      distance(&LabelReport::distance_mm, &Distance::p95));
+  add("distance_max_mm", "labels to mesh, largest mm", "%.3f", Better::neither,
+      distance(&LabelReport::distance_mm, &Distance::max));
+  add("reverse_mean_mm", "mesh to labels, mean mm", "%.3f", Better::neither,
+      distance(&LabelReport::reverse_distance_mm, &Distance::mean));
+  add("reverse_p95_mm", "mesh to labels, 95 % mm", "%.3f", Better::neither,
+      distance(&LabelReport::reverse_distance_mm, &Distance::p95));
+  add("reverse_max_mm", "mesh to labels, largest mm", "%.3f", Better::neither,
+      distance(&LabelReport::reverse_distance_mm, &Distance::max));
   add("angle_min_deg", "smallest angle", "%.2f", Better::more, surface(&SurfaceCheck::angle_min_deg));
   add("angle_median_deg", "median of smallest angles", "%.2f", Better::more, surface(&SurfaceCheck::angle_median_deg));
   add("dihedral_min_deg", "smallest dihedral", "%.2f", Better::more, volume(&VolumeCheck::dihedral_min_deg));
   add("dihedral_max_deg", "largest dihedral", "%.2f", Better::less, volume(&VolumeCheck::dihedral_max_deg));
   add("scaled_jacobian_min", "least scaled Jacobian", "%.3f", Better::more, volume(&VolumeCheck::scaled_jacobian_min));
   // What was measured of no mesh is no row.
-  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const ComparisonRow& r) { return std::all_of(r.values.begin(), r.values.end(), [](double v) { return std::isnan(v); }); }),
+  rows.erase(std::remove_if(rows.begin(), rows.end(),
+                            [](const ComparisonRow& r) {
+                              return std::all_of(r.values.begin(), r.values.end(),
+                                                 [](double v) { return std::isnan(v); });
+                            }),
              rows.end());
   return rows;
 }
@@ -157,7 +182,8 @@ std::string text_summary(const RunReport& r) {
   std::string text;
   if (r.mesh) {
     text += "mesh     " + r.mesh->path + ": " + std::to_string(r.mesh->triangles) + " triangles";
-    if (r.mesh->tets > 0) text += ", " + std::to_string(r.mesh->tets) + " tetrahedra" + (r.mesh->order == 2 ? " of 10 nodes" : "");
+    if (r.mesh->tets > 0)
+      text += ", " + std::to_string(r.mesh->tets) + " tetrahedra" + (r.mesh->order == 2 ? " of 10 nodes" : "");
     text += "; " + r.mesh->labels + "\n";
     text += r.input.path.empty() ? "against  nothing: fidelity is not judged\n" : "against  " + r.input.path + "\n";
     text += "frame    " + r.mesh->space + ": " + r.mesh->space_reason + "\n";
@@ -169,21 +195,29 @@ std::string text_summary(const RunReport& r) {
   Table labels;
   std::vector<std::string> head = {"label", "voxels mm3", "surface mm3"};
   if (tets) head.push_back("tets mm3");
-  for (const char* name : {"parts", "of", "Euler", "genus", "Dice", "wrong %", "band mm", "max mm", "bend", "to faces", "95 %", "max mm", "back mean", "95 %", "max mm", "angle"}) head.push_back(name);
+  for (const char* name : {"parts", "of", "Euler", "genus", "Dice", "wrong %", "band mm", "max mm", "bend", "to faces",
+                           "95 %", "max mm", "back mean", "95 %", "max mm", "angle"})
+    head.push_back(name);
   if (tets) head.push_back("dihedral");
   head.push_back("thin %"), head.push_back("name");
   labels.row(head);
-  const auto number = [](const char* format, const auto& value) { return value ? printed(format, static_cast<double>(*value)) : std::string("-"); };
+  const auto number = [](const char* format, const auto& value) {
+    return value ? printed(format, static_cast<double>(*value)) : std::string("-");
+  };
   for (const LabelReport& l : r.labels) {
-    std::vector<std::string> cells = {std::to_string(l.label), number("%.1f", l.input_volume_mm3), printed("%.1f", l.surface_volume_mm3)};
+    std::vector<std::string> cells = {std::to_string(l.label), number("%.1f", l.input_volume_mm3),
+                                      printed("%.1f", l.surface_volume_mm3)};
     if (tets) cells.push_back(number("%.1f", l.tet_volume_mm3));
     cells.push_back(std::to_string(l.components)), cells.push_back(number("%.0f", l.input_components));
-    cells.push_back(std::to_string(l.euler)), cells.push_back(number("%.0f", l.genus)), cells.push_back(number("%.4f", l.dice));
+    cells.push_back(std::to_string(l.euler)), cells.push_back(number("%.0f", l.genus)),
+        cells.push_back(number("%.4f", l.dice));
     cells.push_back(l.wrong_centres_share ? printed("%.2f", 100 * *l.wrong_centres_share) : "-");
-    for (const auto part : {&BandDistance::mean, &BandDistance::max}) cells.push_back(l.band_distance_mm ? printed("%.3f", (*l.band_distance_mm).*part) : "-");
+    for (const auto part : {&BandDistance::mean, &BandDistance::max})
+      cells.push_back(l.band_distance_mm ? printed("%.3f", (*l.band_distance_mm).*part) : "-");
     cells.push_back(number("%.1f", l.mean_bend_deg));
     for (const auto& d : {l.distance_mm, l.reverse_distance_mm})
-      for (const auto part : {&Distance::mean, &Distance::p95, &Distance::max}) cells.push_back(d ? printed("%.3f", (*d).*part) : "-");
+      for (const auto part : {&Distance::mean, &Distance::p95, &Distance::max})
+        cells.push_back(d ? printed("%.3f", (*d).*part) : "-");
     cells.push_back(printed("%.1f", l.angle_min_deg));
     if (tets) cells.push_back(number("%.1f", l.dihedral_min_deg));
     cells.push_back(l.thin_share ? printed("%.1f", 100 * *l.thin_share) : "-");
@@ -197,7 +231,8 @@ std::string text_summary(const RunReport& r) {
     ++places;
     if (shown == 20) continue;
     ++shown;
-    lines += d.kind + std::string(d.kind.size() < 20 ? 20 - d.kind.size() : 1, ' ') + d.text + (d.section ? ", section " + std::to_string(*d.section) : "") + "\n";
+    lines += d.kind + std::string(d.kind.size() < 20 ? 20 - d.kind.size() : 1, ' ') + d.text +
+             (d.section ? ", section " + std::to_string(*d.section) : "") + "\n";
   }
   if (places > 0) text += "\nwhere (sections count from 0)\n" + lines;
   if (places > shown) text += "and " + std::to_string(places - shown) + " more places, in the report\n";

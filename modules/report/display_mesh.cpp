@@ -37,7 +37,8 @@ std::vector<std::int32_t> curve_order(const std::vector<GridCell>& points) {
     code[i] = spread(points[i][0]) | spread(points[i][1]) << 1 | spread(points[i][2]) << 2;
   std::vector<std::int32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return code[a] != code[b] ? code[a] < code[b] : a < b; });
+  std::sort(order.begin(), order.end(),
+            [&](std::int32_t a, std::int32_t b) { return code[a] != code[b] ? code[a] < code[b] : a < b; });
   return order;
 }
 
@@ -58,7 +59,9 @@ std::vector<std::int32_t> inverse(const std::vector<std::int32_t>& order) {
 }
 
 /// A quarter of a degree a step, up to 63.75.
-std::uint8_t angle_step(double degrees) { return static_cast<std::uint8_t>(std::clamp(std::lround(4 * degrees), 0L, 255L)); }
+std::uint8_t angle_step(double degrees) {
+  return static_cast<std::uint8_t>(std::clamp(std::lround(4 * degrees), 0L, 255L));
+}
 
 struct DrawnTriangle {
   std::array<std::int32_t, 3> v;
@@ -102,7 +105,8 @@ Drawn joined(const Drawn& fine, double cell_units) {
   struct Hash {
     std::size_t operator()(const Key& k) const {
       std::uint64_t h = 1469598103934665603u;
-      for (const std::int32_t part : {k.x, k.y, k.z, k.set}) h = (h ^ static_cast<std::uint32_t>(part)) * 1099511628211u;
+      for (const std::int32_t part : {k.x, k.y, k.z, k.set})
+        h = (h ^ static_cast<std::uint32_t>(part)) * 1099511628211u;
       return h ^ h >> 29;
     }
   };
@@ -126,7 +130,8 @@ Drawn joined(const Drawn& fine, double cell_units) {
     if (!fine.distances_mm.empty()) coarse.distances_mm[c] = std::max(coarse.distances_mm[c], fine.distances_mm[v]);
   }
   for (const auto& s : sums)
-    coarse.points.push_back({static_cast<std::uint16_t>(std::lround(s[0] / s[3])), static_cast<std::uint16_t>(std::lround(s[1] / s[3])),
+    coarse.points.push_back({static_cast<std::uint16_t>(std::lround(s[0] / s[3])),
+                             static_cast<std::uint16_t>(std::lround(s[1] / s[3])),
                              static_cast<std::uint16_t>(std::lround(s[2] / s[3]))});
   // Triangles that fall on each other become one; it keeps the smallest angle of those it stands for.
   struct Corner {
@@ -135,7 +140,8 @@ Drawn joined(const Drawn& fine, double cell_units) {
   };
   std::vector<Corner> corners;
   for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
-    std::array<std::int32_t, 3> c = {cluster_of[fine.triangles[t].v[0]], cluster_of[fine.triangles[t].v[1]], cluster_of[fine.triangles[t].v[2]]};
+    std::array<std::int32_t, 3> c = {cluster_of[fine.triangles[t].v[0]], cluster_of[fine.triangles[t].v[1]],
+                                     cluster_of[fine.triangles[t].v[2]]};
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
     std::sort(c.begin(), c.end());
     corners.push_back({c, static_cast<std::int32_t>(t)});
@@ -169,8 +175,9 @@ DisplayGrid grid_over(const std::vector<Vec3>& points) {
   return grid;
 }
 
-PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm, const DisplayGrid& grid,
-                        const LabelIndex& index, std::size_t most, const std::vector<TriangleValues>& values) {
+PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm,
+                        const DisplayGrid& grid, const LabelIndex& index, std::size_t most,
+                        const std::vector<TriangleValues>& values) {
   Drawn drawn;
   drawn.distances_mm = distances_mm;
   for (const Vec3& p : complex.points) drawn.points.push_back(on_grid(p, grid));
@@ -178,7 +185,8 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
   for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
     const InterfaceTriangle& t = complex.triangles[i];
     const auto angles = triangle_angles_deg(complex.points[t.v[0]], complex.points[t.v[1]], complex.points[t.v[2]]);
-    drawn.triangles.push_back({t.v, index(t.below), index(t.above), angle_step(std::min({angles[0], angles[1], angles[2]})),
+    drawn.triangles.push_back({t.v, index(t.below), index(t.above),
+                               angle_step(std::min({angles[0], angles[1], angles[2]})),
                                values.empty() ? TriangleValues{} : values[i]});
   }
   PackedMesh packed;
@@ -186,11 +194,14 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
     // A cell about as wide as the edges of a surface of that many triangles.
     double area2 = 0;
     for (const InterfaceTriangle& t : complex.triangles)
-      area2 += norm(cross(complex.points[t.v[1]] - complex.points[t.v[0]], complex.points[t.v[2]] - complex.points[t.v[0]]));
+      area2 +=
+          norm(cross(complex.points[t.v[1]] - complex.points[t.v[0]], complex.points[t.v[2]] - complex.points[t.v[0]]));
     double cell_mm = std::max(grid.unit_mm, std::sqrt(area2 / static_cast<double>(std::max<std::size_t>(1, most))));
     Drawn coarse = joined(drawn, cell_mm / grid.unit_mm);
     while (coarse.triangles.size() > most) {
-      cell_mm *= std::clamp(std::sqrt(static_cast<double>(coarse.triangles.size()) / static_cast<double>(std::max<std::size_t>(1, most))), 1.1, 2.0);
+      cell_mm *= std::clamp(
+          std::sqrt(static_cast<double>(coarse.triangles.size()) / static_cast<double>(std::max<std::size_t>(1, most))),
+          1.1, 2.0);
       coarse = joined(drawn, cell_mm / grid.unit_mm);
     }
     packed.cell_mm = cell_mm;
@@ -219,7 +230,8 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
   packed.vertices = drawn.points.size();
   packed.elements = drawn.triangles.size();
   packed.names = {"positions", "triangles", "labels", "angles"};
-  packed.chunks = {pack_positions(drawn.points, order), std::move(corners.text), std::move(labels.text), std::move(angles.text)};
+  packed.chunks = {pack_positions(drawn.points, order), std::move(corners.text), std::move(labels.text),
+                   std::move(angles.text)};
   if (!drawn.distances_mm.empty()) {
     float largest = 0;
     for (const float d : drawn.distances_mm) largest = std::max(largest, d);
@@ -236,13 +248,15 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
   return packed;
 }
 
-PackedMesh pack_tets(const TetMesh& mesh, const DisplayGrid& grid, const LabelIndex& index, std::size_t most, int threads) {
+PackedMesh pack_tets(const TetMesh& mesh, const DisplayGrid& grid, const LabelIndex& index, std::size_t most,
+                     int threads) {
   PackedMesh packed;
   packed.one_of = std::max<std::size_t>(1, (mesh.tets.size() + most - 1) / std::max<std::size_t>(1, most));
   // A number's multiple of the golden ratio spreads what is kept evenly over the mesh's own order.
   std::vector<std::int32_t> kept;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    if (packed.one_of == 1 || static_cast<std::uint32_t>(t * 2654435769u) <= 0xffffffffu / packed.one_of) kept.push_back(static_cast<std::int32_t>(t));
+    if (packed.one_of == 1 || static_cast<std::uint32_t>(t * 2654435769u) <= 0xffffffffu / packed.one_of)
+      kept.push_back(static_cast<std::int32_t>(t));
 
   std::vector<GridCell> points;
   std::vector<std::int32_t> new_point(mesh.points.size(), -1);
@@ -269,7 +283,8 @@ PackedMesh pack_tets(const TetMesh& mesh, const DisplayGrid& grid, const LabelIn
       std::sort(t.v.begin(), t.v.end());
       t.label = index(mesh.labels[kept[i]]);
       const auto cosines = dihedral_cosines(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]);
-      t.angle = angle_step(57.295779513082320877 * std::acos(std::clamp(*std::max_element(cosines.begin(), cosines.end()), -1.0, 1.0)));
+      t.angle = angle_step(57.295779513082320877 *
+                           std::acos(std::clamp(*std::max_element(cosines.begin(), cosines.end()), -1.0, 1.0)));
     }
   });
   std::stable_sort(tets.begin(), tets.end(), [](const DrawnTet& a, const DrawnTet& b) { return a.v < b.v; });
@@ -285,7 +300,8 @@ PackedMesh pack_tets(const TetMesh& mesh, const DisplayGrid& grid, const LabelIn
   packed.vertices = points.size();
   packed.elements = tets.size();
   packed.names = {"positions", "tets", "labels", "angles"};
-  packed.chunks = {pack_positions(points, order), std::move(corners.text), std::move(labels.text), std::move(angles.text)};
+  packed.chunks = {pack_positions(points, order), std::move(corners.text), std::move(labels.text),
+                   std::move(angles.text)};
   return packed;
 }
 

@@ -26,7 +26,9 @@ constexpr double kSliceShare = 0.15, kCutShare = 0.2, kSurfaceShare = 0.25, kTet
 // What an element takes, deflated, on real meshes; rather too much.
 constexpr double kTriangleBytes = 6.5, kTetBytes = 7.5;
 
-Json vec(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json vec(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 Frame frame_of(const LabelVolume& volume, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -38,14 +40,20 @@ Frame frame_of(const LabelVolume& volume, int axis) {
 /// How a section is shown: which stack axis runs to the right and which down, so that radiologists find the
 /// patient's right on the left and the front, or the head, on top.
 Json orientation(const Frame& lps, bool anatomical) {
-  if (!anatomical) return {{"right", {{"axis", 0}, {"sign", 1}}}, {"down", {{"axis", 1}, {"sign", 1}}}, {"letters", nullptr}, {"view", "section"}};
+  if (!anatomical)
+    return {{"right", {{"axis", 0}, {"sign", 1}}},
+            {"down", {{"axis", 1}, {"sign", 1}}},
+            {"letters", nullptr},
+            {"view", "section"}};
   const auto largest = [](const Vec3& v) {
     const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
     return z >= x && z >= y ? 2 : y >= x ? 1 : 0;
   };
   const int stacking = largest(lps.axes[2]);
-  const Vec3 right = stacking == 0 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, down = stacking == 2 ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
-  const char* letters = stacking == 2 ? "RLAP" : stacking == 1 ? "RLSI" : "APSI";  // left, right, top, bottom of the picture
+  const Vec3 right = stacking == 0 ? Vec3{0, 1, 0} : Vec3{1, 0, 0},
+             down = stacking == 2 ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
+  // left, right, top, bottom of the picture
+  const char* letters = stacking == 2 ? "RLAP" : stacking == 1 ? "RLSI" : "APSI";
   const char* view = stacking == 2 ? "axial" : stacking == 1 ? "coronal" : "sagittal";
   const int across = std::abs(dot(lps.axes[0], right)) >= std::abs(dot(lps.axes[1], right)) ? 0 : 1;
   return {{"right", {{"axis", across}, {"sign", dot(lps.axes[across], right) < 0 ? -1 : 1}}},
@@ -71,7 +79,10 @@ LabelIndex labels_of(const HtmlScene& scene) {
 class Pictures {
  public:
   Pictures(const HtmlScene& scene, const HtmlOptions& options)
-      : scene_(scene), options_(options), index_(labels_of(scene)), bytes_(0.75 * static_cast<double>(options.bytes_limit)) {}
+      : scene_(scene),
+        options_(options),
+        index_(labels_of(scene)),
+        bytes_(0.75 * static_cast<double>(options.bytes_limit)) {}
 
   HtmlPictures draw() {
     place();
@@ -129,7 +140,8 @@ class Pictures {
     drawing_.tolerance_mm = 2 * drawing_.unit_mm;
     drawing_.threads = options_.threads;
     json_["space"] = to_text(space());
-    json_["frame"] = {{"origin", vec(frame_.origin)}, {"axes", {vec(frame_.axes[0]), vec(frame_.axes[1]), vec(frame_.axes[2])}}};
+    json_["frame"] = {{"origin", vec(frame_.origin)},
+                      {"axes", {vec(frame_.axes[0]), vec(frame_.axes[1]), vec(frame_.axes[2])}}};
     json_["orientation"] = orientation(lps, space() != Space::none);
     json_["pixel_mm"] = pixel_;
     json_["planes"] = planes;
@@ -172,7 +184,8 @@ class Pictures {
   Json add_within(const std::string& name, std::vector<std::string> chunks, double share) {
     Json j = add(name, chunks);
     std::size_t step = 1;
-    for (; static_cast<double>(blobs_.back().bytes().size()) > share * bytes_ && step < chunks.size(); j = add(name, chunks)) {
+    for (; static_cast<double>(blobs_.back().bytes().size()) > share * bytes_ && step < chunks.size();
+         j = add(name, chunks)) {
       blobs_.pop_back();
       step *= 2;
       for (std::size_t k = 0; k < chunks.size(); ++k)
@@ -184,7 +197,8 @@ class Pictures {
 
   void slices() {
     const PixelWindow window = window_of_labels(*scene_.volume, scene_.stack_axis);
-    Json j = add_within("slices", pack_slices(*scene_.volume, scene_.stack_axis, window, index_, options_.threads), kSliceShare);
+    Json j = add_within("slices", pack_slices(*scene_.volume, scene_.stack_axis, window, index_, options_.threads),
+                        kSliceShare);
     j["window"] = {window.x, window.y, window.width, window.height};
     json_["slices"] = j;
   }
@@ -242,9 +256,12 @@ class Pictures {
     if (scene_.surface->triangles.empty()) return;
     const DisplayGrid grid = grid_over(scene_.surface->points);
     PackedMesh packed;
-    const std::vector<TriangleValues> values = scene_.values == nullptr ? std::vector<TriangleValues>() : values_on(*scene_.surface, *scene_.values);
-    json_["surface"] = fitted("surface", grid, scene_.surface->triangles.size(), kSurfaceShare, std::min(400e3, kSurfaceShare * bytes_ / kTriangleBytes), packed,
-                              [&](std::size_t most) { return pack_surface(*scene_.surface, distances_mm_, grid, index_, most, values); });
+    const std::vector<TriangleValues> values =
+        scene_.values == nullptr ? std::vector<TriangleValues>() : values_on(*scene_.surface, *scene_.values);
+    json_["surface"] = fitted("surface", grid, scene_.surface->triangles.size(), kSurfaceShare,
+                              std::min(400e3, kSurfaceShare * bytes_ / kTriangleBytes), packed, [&](std::size_t most) {
+                                return pack_surface(*scene_.surface, distances_mm_, grid, index_, most, values);
+                              });
     if (!values.empty())
       json_["surface"]["model"] = {{"sets", scene_.values->sets},
                                    {"modulus_low_mpa", scene_.values->modulus_low_mpa},
@@ -257,14 +274,16 @@ class Pictures {
     if (!scene_.mesh->wedges.empty()) divided = with_tets_only(*scene_.mesh);
     const TetMesh& drawn = scene_.mesh->wedges.empty() ? *scene_.mesh : divided;
     const DisplayGrid tet_grid = grid_over(drawn.points);
-    json_["tets"] = fitted("tets", tet_grid, drawn.tets.size(), kTetShare, std::min(1e6, kTetShare * bytes_ / kTetBytes), packed,
-                           [&](std::size_t most) { return pack_tets(drawn, tet_grid, index_, most, options_.threads); });
+    json_["tets"] =
+        fitted("tets", tet_grid, drawn.tets.size(), kTetShare, std::min(1e6, kTetShare * bytes_ / kTetBytes), packed,
+               [&](std::size_t most) { return pack_tets(drawn, tet_grid, index_, most, options_.threads); });
     json_["tets"]["one_of"] = packed.one_of;
   }
 
   /// Packs with fewer and fewer elements until the blob is within its share of the limit.
   template <class Pack>
-  Json fitted(const std::string& name, const DisplayGrid& grid, std::size_t of, double share, double most, PackedMesh& packed, Pack pack) {
+  Json fitted(const std::string& name, const DisplayGrid& grid, std::size_t of, double share, double most,
+              PackedMesh& packed, Pack pack) {
     packed = pack(static_cast<std::size_t>(most));
     Json j = describe(packed, name, grid, of);
     while (static_cast<double>(blobs_.back().bytes().size()) > share * bytes_ && packed.elements > 100) {
@@ -278,8 +297,16 @@ class Pictures {
   void histograms() {
     Json list = Json::array();
     for (const Histogram& h : make_histograms(*scene_.surface, scene_.mesh, distances_mm_, options_.threads))
-      list.push_back({{"name", h.name}, {"title", h.title}, {"unit", h.unit}, {"low", h.low}, {"high", h.high}, {"counts", h.counts},
-                      {"values", h.values}, {"smallest", h.smallest}, {"median", h.median}, {"largest", h.largest}});
+      list.push_back({{"name", h.name},
+                      {"title", h.title},
+                      {"unit", h.unit},
+                      {"low", h.low},
+                      {"high", h.high},
+                      {"counts", h.counts},
+                      {"values", h.values},
+                      {"smallest", h.smallest},
+                      {"median", h.median},
+                      {"largest", h.largest}});
     json_["histograms"] = list;
   }
 
@@ -290,7 +317,11 @@ class Pictures {
       Json corners = Json::array(), labels = Json::array();
       for (const Vec3& c : p.corners_mm) corners.push_back(vec(c));
       for (const Label l : p.labels) labels.push_back(index_(l));
-      list.push_back({{"kind", p.kind}, {"figure", p.figure}, {"at_mm", vec(p.at_mm)}, {"corners_mm", corners}, {"labels", labels}});
+      list.push_back({{"kind", p.kind},
+                      {"figure", p.figure},
+                      {"at_mm", vec(p.at_mm)},
+                      {"corners_mm", corners},
+                      {"labels", labels}});
     }
     json_["worst"] = list;
   }

@@ -12,11 +12,12 @@ namespace {
 constexpr std::size_t kChunk = 1 << 14;
 
 /// `values` is reordered.
-Histogram count(const std::string& name, const std::string& title, const std::string& unit, double low, double high, std::size_t bins,
-                std::vector<float>& values) {
+Histogram count(const std::string& name, const std::string& title, const std::string& unit, double low, double high,
+                std::size_t bins, std::vector<float>& values) {
   Histogram h{name, title, unit, low, high, std::vector<std::size_t>(bins, 0), values.size()};
   for (const float x : values)
-    ++h.counts[static_cast<std::size_t>(std::clamp((x - low) / (high - low) * static_cast<double>(bins), 0.0, static_cast<double>(bins) - 1))];
+    ++h.counts[static_cast<std::size_t>(
+        std::clamp((x - low) / (high - low) * static_cast<double>(bins), 0.0, static_cast<double>(bins) - 1))];
   if (values.empty()) return h;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   h.smallest = *least, h.largest = *most;
@@ -41,8 +42,8 @@ double round_top(std::vector<float>& values) {
 
 }  // namespace
 
-std::vector<Histogram> make_histograms(const InterfaceComplex& complex, const TetMesh* mesh, const std::vector<float>& distances_mm,
-                                       int threads) {
+std::vector<Histogram> make_histograms(const InterfaceComplex& complex, const TetMesh* mesh,
+                                       const std::vector<float>& distances_mm, int threads) {
   std::vector<Histogram> all;
   const std::size_t triangles = complex.triangles.size();
   std::vector<float> angles(3 * triangles), edges;
@@ -60,9 +61,11 @@ std::vector<Histogram> make_histograms(const InterfaceComplex& complex, const Te
     parallel_for((mesh->tets.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(mesh->tets.size(), (chunk + 1) * kChunk); ++t) {
         const auto& v = mesh->tets[t];
-        const auto cosines = dihedral_cosines(mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], mesh->points[v[3]]);
+        const auto cosines =
+            dihedral_cosines(mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], mesh->points[v[3]]);
         for (int k = 0; k < 6; ++k)
-          dihedrals[6 * t + k] = static_cast<float>(57.295779513082320877 * std::acos(std::clamp(cosines[k], -1.0, 1.0)));
+          dihedrals[6 * t + k] =
+              static_cast<float>(57.295779513082320877 * std::acos(std::clamp(cosines[k], -1.0, 1.0)));
       }
     });
     all.push_back(count("dihedrals", "Dihedral angles of tetrahedra", "degrees", 0, 180, 36, dihedrals));
@@ -86,7 +89,8 @@ std::vector<Histogram> make_histograms(const InterfaceComplex& complex, const Te
   if (!distances_mm.empty()) {
     std::vector<float> distances = distances_mm;
     const double farthest = round_top(distances);
-    all.push_back(count("distances", "Distances of surface vertices to the labels' voxel boundary", "mm", 0, farthest, 30, distances));
+    all.push_back(count("distances", "Distances of surface vertices to the labels' voxel boundary", "mm", 0, farthest,
+                        30, distances));
   }
   return all;
 }

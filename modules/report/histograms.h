@@ -17,7 +17,7 @@ struct Histogram {
 };
 
 /// Of every triangle angle, dihedral angle, edge length of the surface, and vertex distance, as far as they are there.
-std::vector<Histogram> make_histograms(const InterfaceComplex& complex, const TetMesh* mesh, const std::vector<float>& distances_mm,
-                                       int threads);
+std::vector<Histogram> make_histograms(const InterfaceComplex& complex, const TetMesh* mesh,
+                                       const std::vector<float>& distances_mm, int threads);
 
 }  // namespace stackmesh

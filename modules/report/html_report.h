@@ -23,9 +23,9 @@ struct HtmlScene {
 };
 
 struct HtmlOptions {
-  int threads = 0;                              ///< 0: all of the machine; the page does not depend on it
-  std::size_t bytes_limit = 22 * 1000 * 1000;   ///< of the pictures' data, base64; pictures are simplified to keep it
-  bool labels = true;                           ///< false: without the labels' own slices or contours
+  int threads = 0;                             ///< 0: all of the machine; the page does not depend on it
+  std::size_t bytes_limit = 22 * 1000 * 1000;  ///< of the pictures' data, base64; pictures are simplified to keep it
+  bool labels = true;                          ///< false: without the labels' own slices or contours
 };
 
 /// The pictures of one mesh, packed for the page (modules/report/README.md describes their form).

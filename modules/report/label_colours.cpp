@@ -17,10 +17,12 @@ std::string hex(double red, double green, double blue) {
 /// A colour of Oklab's cylinder: lightness and chroma from 0, hue in turns.
 std::string oklch(double lightness, double chroma, double hue) {
   const double a = chroma * std::cos(6.283185307179586 * hue), b = chroma * std::sin(6.283185307179586 * hue);
-  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3), m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3),
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3),
+               m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3),
                s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
   const auto gamma = [](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; };
-  return hex(gamma(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s), gamma(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+  return hex(gamma(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+             gamma(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
              gamma(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s));
 }
 

@@ -48,8 +48,9 @@ std::vector<Point> simplified(const std::vector<Point>& line, double tolerance) 
 }  // namespace
 
 std::vector<Polyline> join_segments(std::vector<CurveSegment> segments, double unit, double tolerance) {
-  segments.erase(std::remove_if(segments.begin(), segments.end(), [](const CurveSegment& s) { return s.left == s.right; }),
-                 segments.end());
+  segments.erase(
+      std::remove_if(segments.begin(), segments.end(), [](const CurveSegment& s) { return s.left == s.right; }),
+      segments.end());
   for (CurveSegment& s : segments)
     if (s.left > s.right) std::swap(s.left, s.right), std::swap(s.from, s.to), std::swap(s.a, s.b);
   const auto start_key = [](const CurveSegment& s) { return std::tie(s.left, s.right, s.from); };
@@ -80,7 +81,8 @@ std::vector<Polyline> join_segments(std::vector<CurveSegment> segments, double u
     return kNone;
   };
   const auto rounded = [unit](const std::array<double, 2>& p) {
-    return Point{static_cast<std::int32_t>(std::lround(p[0] / unit)), static_cast<std::int32_t>(std::lround(p[1] / unit))};
+    return Point{static_cast<std::int32_t>(std::lround(p[0] / unit)),
+                 static_cast<std::int32_t>(std::lround(p[1] / unit))};
   };
 
   std::vector<Polyline> lines;

@@ -11,7 +11,7 @@ namespace stackmesh {
 /// A directed piece of a plane curve between two labels (by their index), from one node to another.
 struct CurveSegment {
   std::int32_t left = 0, right = 0;
-  std::uint64_t from = 0, to = 0;          ///< names of its nodes; equal names join segments
+  std::uint64_t from = 0, to = 0;  ///< names of its nodes; equal names join segments
   std::array<double, 2> a = {0, 0}, b = {0, 0};
 };
 

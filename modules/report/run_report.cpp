@@ -74,11 +74,24 @@ Json layer(const LayerFigures& f) {
   Json places = Json::array();
   for (std::size_t i = 0; i < std::min<std::size_t>(50, f.places.size()); ++i) {
     const LayerPlace& p = f.places[i];
-    places.push_back({{"at_mm", {p.at_mm.x, p.at_mm.y, p.at_mm.z}}, {"area_mm2", p.area_mm2}, {"thickness_mm", p.thickness_mm}, {"why", layer_limit_name(p.why)}});
+    places.push_back({{"at_mm", {p.at_mm.x, p.at_mm.y, p.at_mm.z}},
+                      {"area_mm2", p.area_mm2},
+                      {"thickness_mm", p.thickness_mm},
+                      {"why", layer_limit_name(p.why)}});
   }
-  return {{"label", f.label}, {"thickness_mm", f.asked.thickness_mm}, {"count", f.asked.count}, {"wedges", f.wedges}, {"pyramids", f.pyramids}, {"tets", f.tets},
-          {"area_mm2", f.area_mm2}, {"full_share", f.full_rel}, {"thinned_share", f.thinned_rel}, {"missing_share", f.missing_rel},
-          {"thickness_min_mm", f.thickness_min_mm}, {"place_count", f.places.size()}, {"places", places}};
+  return {{"label", f.label},
+          {"thickness_mm", f.asked.thickness_mm},
+          {"count", f.asked.count},
+          {"wedges", f.wedges},
+          {"pyramids", f.pyramids},
+          {"tets", f.tets},
+          {"area_mm2", f.area_mm2},
+          {"full_share", f.full_rel},
+          {"thinned_share", f.thinned_rel},
+          {"missing_share", f.missing_rel},
+          {"thickness_min_mm", f.thickness_min_mm},
+          {"place_count", f.places.size()},
+          {"places", places}};
 }
 
 Json label(const LabelReport& l) {
@@ -115,13 +128,20 @@ Json label(const LabelReport& l) {
 }
 
 Json verdict(const Verdict& v) {
-  return {{"id", v.id}, {"title", v.title}, {"status", to_text(v.status)}, {"figure", v.figure}, {"limit", v.limit},
-          {"validity", v.validity}, {"labels", v.labels}, {"explanation", v.explanation}};
+  return {{"id", v.id},       {"title", v.title},       {"status", to_text(v.status)}, {"figure", v.figure},
+          {"limit", v.limit}, {"validity", v.validity}, {"labels", v.labels},          {"explanation", v.explanation}};
 }
 
 Json defect(const Defect& d) {
-  return {{"kind", d.kind}, {"label", d.label}, {"where_mm", {d.where.x, d.where.y, d.where.z}}, {"section", optional(d.section)},
-          {"count", d.count}, {"size_mm", d.size_mm}, {"entity_kind", d.entity_kind}, {"entities", d.entities}, {"text", d.text}};
+  return {{"kind", d.kind},
+          {"label", d.label},
+          {"where_mm", {d.where.x, d.where.y, d.where.z}},
+          {"section", optional(d.section)},
+          {"count", d.count},
+          {"size_mm", d.size_mm},
+          {"entity_kind", d.entity_kind},
+          {"entities", d.entities},
+          {"text", d.text}};
 }
 
 /// Every limit by its name.
@@ -129,7 +149,8 @@ template <class L, class Visit>
 void each_limit(L& l, Visit visit) {
   visit("volume_warn_rel", l.volume_warn_rel), visit("volume_fail_rel", l.volume_fail_rel);
   visit("dice_warn", l.dice_warn), visit("dice_fail", l.dice_fail);
-  visit("wrong_centres_warn_share", l.wrong_centres_warn_share), visit("wrong_centres_fail_share", l.wrong_centres_fail_share);
+  visit("wrong_centres_warn_share", l.wrong_centres_warn_share),
+      visit("wrong_centres_fail_share", l.wrong_centres_fail_share);
   visit("band_mean_warn_px", l.band_mean_warn_px), visit("band_mean_fail_px", l.band_mean_fail_px);
   visit("band_max_warn_px", l.band_max_warn_px), visit("band_max_fail_px", l.band_max_fail_px);
   visit("mean_distance_warn_px", l.mean_distance_warn_px), visit("mean_distance_fail_px", l.mean_distance_fail_px);
@@ -146,9 +167,15 @@ void each_limit(L& l, Visit visit) {
   visit("small_label_voxels", l.small_label_voxels);
 }
 
-Json json_of(double value) { return value; }
-Json json_of(std::size_t value) { return value; }
-Json json_of(const std::optional<double>& value) { return optional(value); }
+Json json_of(double value) {
+  return value;
+}
+Json json_of(std::size_t value) {
+  return value;
+}
+Json json_of(const std::optional<double>& value) {
+  return optional(value);
+}
 
 Json limits(const Limits& l) {
   Json j = Json::object();
@@ -158,35 +185,52 @@ Json limits(const Limits& l) {
 
 Json mesh(const std::optional<JudgedMesh>& m) {
   if (!m) return nullptr;
-  return {{"path", m->path}, {"format", m->format}, {"vertices", m->vertices}, {"triangles", m->triangles}, {"tets", m->tets}, {"wedges", m->wedges}, {"order", m->order},
-          {"labels", m->labels}, {"space", m->space}, {"space_reason", m->space_reason}, {"sha256", m->sha256}};
+  return {{"path", m->path},         {"format", m->format},
+          {"vertices", m->vertices}, {"triangles", m->triangles},
+          {"tets", m->tets},         {"wedges", m->wedges},
+          {"order", m->order},       {"labels", m->labels},
+          {"space", m->space},       {"space_reason", m->space_reason},
+          {"sha256", m->sha256}};
 }
 
 Json provenance(const std::optional<Provenance>& p) {
   if (!p) return nullptr;
-  return {{"input_sha256", p->input_sha256}, {"input_files", p->input_files},
+  return {{"input_sha256", p->input_sha256},
+          {"input_files", p->input_files},
           {"program", {{"compiler", p->compiler}, {"build_type", p->build_type}, {"sha256", p->program_sha256}}},
-          {"machine", {{"processor", p->processor}, {"cores", p->cores}, {"memory_gib", p->memory_gib}, {"system", p->system}}},
+          {"machine",
+           {{"processor", p->processor}, {"cores", p->cores}, {"memory_gib", p->memory_gib}, {"system", p->system}}},
           {"finished_utc", p->finished_utc}};
 }
 
 const char* model_name(MaterialKind kind) {
   switch (kind) {
-    case MaterialKind::linear: return "linear";
-    case MaterialKind::orthotropic: return "orthotropic";
-    case MaterialKind::neo_hooke: return "neo_hooke";
-    case MaterialKind::mooney_rivlin: return "mooney_rivlin";
-    case MaterialKind::holzapfel: return "holzapfel";
+    case MaterialKind::linear:
+      return "linear";
+    case MaterialKind::orthotropic:
+      return "orthotropic";
+    case MaterialKind::neo_hooke:
+      return "neo_hooke";
+    case MaterialKind::mooney_rivlin:
+      return "mooney_rivlin";
+    case MaterialKind::holzapfel:
+      return "holzapfel";
   }
   return "";
 }
 
 Json fem(const FemReport& f) {
   Json sets = Json::array(), pairs = Json::array(), materials = Json::array(), skins = Json::array();
-  for (const FemSet& s : f.sets) sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
+  for (const FemSet& s : f.sets)
+    sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
   for (const SurfacePair& p : f.pairs) {
-    Json row = {{"name", p.name}, {"primary", p.primary}, {"secondary", p.secondary}, {"parts", p.parts},
-                {"contact", p.contact == Contact::tie ? "tie" : p.contact == Contact::contact ? "contact" : "none"}};
+    Json row = {{"name", p.name},
+                {"primary", p.primary},
+                {"secondary", p.secondary},
+                {"parts", p.parts},
+                {"contact", p.contact == Contact::tie       ? "tie"
+                            : p.contact == Contact::contact ? "contact"
+                                                            : "none"}};
     if (p.contact == Contact::contact) {
       row["stiffness_mpa_mm"] = p.stiffness_mpa_mm;
       row["friction"] = p.friction;
@@ -212,7 +256,11 @@ Json fem(const FemReport& f) {
                          {"voxels", m.voxels}});
   Json steps = Json::array(), bodies = Json::array();
   for (const Body& b : f.bodies)
-    bodies.push_back({{"label", b.label}, {"name", b.name}, {"elements", b.tets}, {"volume_mm3", b.volume_mm3}, {"centre_mm", {b.centre.x, b.centre.y, b.centre.z}}});
+    bodies.push_back({{"label", b.label},
+                      {"name", b.name},
+                      {"elements", b.tets},
+                      {"volume_mm3", b.volume_mm3},
+                      {"centre_mm", {b.centre.x, b.centre.y, b.centre.z}}});
   for (const FemStep& s : f.steps)
     steps.push_back({{"name", s.name},
                      {"type", s.frequency ? "frequency" : "static"},
@@ -238,8 +286,14 @@ Json fem(const FemReport& f) {
                       {"displacement_error_rel", s.displacement_error_rel},
                       {"zz_rel", s.zz_rel},
                       {"held", s.held}});
-    accuracy = {{"asked_rel", f.accuracy->asked_rel}, {"reached", f.accuracy->reached},  {"error_rel", e.error_rel}, {"worst_set", e.worst_set},
-                {"elements", f.accuracy->elements},   {"solve_s", f.accuracy->solve_s}, {"zz_rel", e.zz_rel},       {"sets", rows}};
+    accuracy = {{"asked_rel", f.accuracy->asked_rel},
+                {"reached", f.accuracy->reached},
+                {"error_rel", e.error_rel},
+                {"worst_set", e.worst_set},
+                {"elements", f.accuracy->elements},
+                {"solve_s", f.accuracy->solve_s},
+                {"zz_rel", e.zz_rel},
+                {"sets", rows}};
   }
   return {{"order", f.order},
           {"accuracy", accuracy},
@@ -256,7 +310,11 @@ Json fem(const FemReport& f) {
           {"materials", materials},
           {"skins", skins},
           {"bodies", bodies},
-          {"load_case", {{"supports", f.supports}, {"loaded_nodes", f.loaded_nodes}, {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}}, {"steps", steps}}}};
+          {"load_case",
+           {{"supports", f.supports},
+            {"loaded_nodes", f.loaded_nodes},
+            {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}},
+            {"steps", steps}}}};
 }
 
 }  // namespace
@@ -278,60 +336,75 @@ Json describe(const RunReport& r) {
   Json warning_details = Json::array();
   for (const Warning& w : r.warnings) warning_details.push_back({{"code", to_text(w.code)}, {"where", w.where}});
   const bool grid = r.input.dimensions[0] > 0;
-  Json j = {
-      {"schema", 1},
-      {"stackmesh", r.version},
-      {"command", r.command},
-      {"options", options},
-      {"input",
-       {{"path", r.input.path},
-        {"kind", r.input.kind},
-        {"dimensions", grid ? Json(r.input.dimensions) : Json(nullptr)},
-        {"spacing_mm", grid ? Json(r.input.spacing_mm) : Json(nullptr)},
-        {"effective_spacing_mm", grid ? Json(r.input.effective_spacing_mm) : Json(nullptr)},
-        {"axis", r.input.axis},
-        {"sections", r.input.sections},
-        {"space", r.input.space}}},
-      {"stages", stages},
-      {"peak_rss_mb", r.peak_rss_mb},
-      {"contours",
-       {{"loops", r.contours.loops}, {"vertices_traced", r.contours.vertices_traced}, {"vertices", r.contours.vertices}}},
-      {"stitched",
-       {{"vertices", r.stitched.vertices},
-        {"triangles", r.stitched.triangles},
-        {"open_edges", r.stitched.open_edges},
-        {"self_intersections", r.stitched.self_intersections},
-        {"added_points", r.stitched.added_points}}},
-      {"surface", surface(r)},
-      {"volume", volume(r)},
-      {"labels", labels},
-      {"layers", layers},
-      {"mesh", mesh(r.mesh)},
-      {"verdict", r.verdicts.empty() ? Json(nullptr) : Json(to_text(overall(r.verdicts)))},
-      {"verdicts", verdicts},
-      {"defects", defects},
-      {"limits", limits(r.limits)},
-      {"provenance", provenance(r.provenance)},
-      {"warnings", texts_of(r.warnings)},
-      {"warning_details", warning_details}};
+  Json j = {{"schema", 1},
+            {"stackmesh", r.version},
+            {"command", r.command},
+            {"options", options},
+            {"input",
+             {{"path", r.input.path},
+              {"kind", r.input.kind},
+              {"dimensions", grid ? Json(r.input.dimensions) : Json(nullptr)},
+              {"spacing_mm", grid ? Json(r.input.spacing_mm) : Json(nullptr)},
+              {"effective_spacing_mm", grid ? Json(r.input.effective_spacing_mm) : Json(nullptr)},
+              {"axis", r.input.axis},
+              {"sections", r.input.sections},
+              {"space", r.input.space}}},
+            {"stages", stages},
+            {"peak_rss_mb", r.peak_rss_mb},
+            {"contours",
+             {{"loops", r.contours.loops},
+              {"vertices_traced", r.contours.vertices_traced},
+              {"vertices", r.contours.vertices}}},
+            {"stitched",
+             {{"vertices", r.stitched.vertices},
+              {"triangles", r.stitched.triangles},
+              {"open_edges", r.stitched.open_edges},
+              {"self_intersections", r.stitched.self_intersections},
+              {"added_points", r.stitched.added_points}}},
+            {"surface", surface(r)},
+            {"volume", volume(r)},
+            {"labels", labels},
+            {"layers", layers},
+            {"mesh", mesh(r.mesh)},
+            {"verdict", r.verdicts.empty() ? Json(nullptr) : Json(to_text(overall(r.verdicts)))},
+            {"verdicts", verdicts},
+            {"defects", defects},
+            {"limits", limits(r.limits)},
+            {"provenance", provenance(r.provenance)},
+            {"warnings", texts_of(r.warnings)},
+            {"warning_details", warning_details}};
   if (r.fem) j["fem"] = fem(*r.fem);
   return j;
 }
 
 /// File names need not be valid UTF-8: what is not is replaced.
-std::string text_of(const Json& j) { return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string text_of(const Json& j) {
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace
 
 namespace {
 
-double number_of(double value) { return value; }
-double number_of(std::size_t value) { return static_cast<double>(value); }
-double number_of(const std::optional<double>& value) { return value.value_or(std::numeric_limits<double>::quiet_NaN()); }
+double number_of(double value) {
+  return value;
+}
+double number_of(std::size_t value) {
+  return static_cast<double>(value);
+}
+double number_of(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
 
-void set_limit(double& limit, const Json& value) { limit = value.get<double>(); }
-void set_limit(std::size_t& limit, const Json& value) { limit = value.get<std::size_t>(); }
-void set_limit(std::optional<double>& limit, const Json& value) { limit = value.get<double>(); }
+void set_limit(double& limit, const Json& value) {
+  limit = value.get<double>();
+}
+void set_limit(std::size_t& limit, const Json& value) {
+  limit = value.get<std::size_t>();
+}
+void set_limit(std::optional<double>& limit, const Json& value) {
+  limit = value.get<double>();
+}
 
 }  // namespace
 
@@ -341,7 +414,9 @@ std::vector<std::pair<std::string, double>> named_limits(const Limits& limits) {
   return named;
 }
 
-std::string to_json(const RunReport& report) { return text_of(describe(report)); }
+std::string to_json(const RunReport& report) {
+  return text_of(describe(report));
+}
 
 std::string to_json(const std::vector<RunReport>& reports) {
   Json meshes = Json::array(), rows = Json::array(), names = Json::array();
@@ -354,13 +429,19 @@ std::string to_json(const std::vector<RunReport>& reports) {
     for (const double v : row.values) values.push_back(std::isfinite(v) ? Json(v) : Json(nullptr));
     rows.push_back({{"id", row.id}, {"name", row.name}, {"values", values}, {"best", row.best}});
   }
-  return text_of({{"schema", 1}, {"stackmesh", reports.empty() ? "" : reports[0].version}, {"command", "validate"},
-                  {"comparison", {{"meshes", names}, {"rows", rows}}}, {"meshes", meshes}});
+  return text_of({{"schema", 1},
+                  {"stackmesh", reports.empty() ? "" : reports[0].version},
+                  {"command", "validate"},
+                  {"comparison", {{"meshes", names}, {"rows", rows}}},
+                  {"meshes", meshes}});
 }
 
 Limits read_limits(const std::string& path) {
-  const Json j = Json::parse(read_json_text(path, "the file of limits", "check the name and the rights"), nullptr, false);
-  if (j.is_discarded() || !j.is_object()) fail_input("the limits are no JSON object", path, "write {\"dice_warn\": 0.9, ...}; a report lists the names under limits");
+  const Json j =
+      Json::parse(read_json_text(path, "the file of limits", "check the name and the rights"), nullptr, false);
+  if (j.is_discarded() || !j.is_object())
+    fail_input("the limits are no JSON object", path,
+               "write {\"dice_warn\": 0.9, ...}; a report lists the names under limits");
   Limits limits;
   std::string known;
   for (const auto& [key, value] : j.items()) {
@@ -368,8 +449,10 @@ Limits read_limits(const std::string& path) {
     each_limit(limits, [&, name = key, given = value](const char* field, auto& into) {
       if (name != field) return;
       found = true;
-      if (given.is_null() && std::is_same_v<std::decay_t<decltype(into)>, std::optional<double>>) return;  // as a report lists it
-      if (!given.is_number() || given.template get<double>() < 0) fail_input("the limit '" + name + "' is no number from 0", path, "give a number");
+      // as a report lists it
+      if (given.is_null() && std::is_same_v<std::decay_t<decltype(into)>, std::optional<double>>) return;
+      if (!given.is_number() || given.template get<double>() < 0)
+        fail_input("the limit '" + name + "' is no number from 0", path, "give a number");
       set_limit(into, given);
     });
     if (!found) fail_input("there is no limit '" + key + "'", path, "a report lists the names under limits");
@@ -379,7 +462,8 @@ Limits read_limits(const std::string& path) {
 
 std::string names_to_json(const RunReport& r) {
   Json labels = Json::array();
-  for (const LabelReport& l : r.labels) labels.push_back({{"label", l.label}, {"name", l.name}, {"colour", l.colour ? Json(*l.colour) : Json(nullptr)}});
+  for (const LabelReport& l : r.labels)
+    labels.push_back({{"label", l.label}, {"name", l.name}, {"colour", l.colour ? Json(*l.colour) : Json(nullptr)}});
   return Json{{"labels", labels}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -11,13 +11,13 @@
 #include "fem/assign_materials.h"
 #include "fem/check_supports.h"
 #include "fem/estimate_error.h"
-#include "model/layers.h"
 #include "model/geometry.h"
+#include "model/layers.h"
+#include "report/surface_values.h"
 #include "validate/check_bends.h"
 #include "validate/check_fidelity.h"
 #include "validate/check_surface.h"
 #include "validate/check_volume.h"
-#include "report/surface_values.h"
 #include "validate/verdict.h"
 
 namespace stackmesh {
@@ -27,7 +27,7 @@ struct LabelReport {
   Label label = 0;
   std::string name;
   std::optional<std::array<std::uint8_t, 3>> colour;  ///< red, green, blue, where the input has one
-  bool is_void = false;  ///< it bounds the others and is not filled
+  bool is_void = false;                               ///< it bounds the others and is not filled
   bool closed = false;
   int components = 0;
   std::optional<int> input_components;
@@ -46,7 +46,7 @@ struct LabelReport {
   double surface_area_mm2 = 0, angle_min_deg = 0;
   std::optional<double> dihedral_min_deg, dihedral_max_deg;
   std::optional<double> thin_share, thickness_p5_mm;  ///< see check_thickness
-  std::optional<std::size_t> wedges;  ///< of layers, with pyramids
+  std::optional<std::size_t> wedges;                  ///< of layers, with pyramids
   std::size_t nonmanifold_edges = 0;
   std::optional<double> mean_bend_deg, bends_above_40_share;  ///< see Bends
 };
@@ -54,11 +54,12 @@ struct LabelReport {
 /// The mesh that `validate` judged, as its file told it.
 struct JudgedMesh {
   std::string path, format;
-  std::size_t vertices = 0, triangles = 0, tets = 0, wedges = 0;  ///< in the file, before anything was joined or left out
-  int order = 1;                                      ///< 2: tets of 10 nodes
-  std::string labels;       ///< where its labels came from, and which label of the input each stands for
-  std::string space;        ///< "lps", "ras" or "none"
-  std::string space_reason; ///< why that one
+  /// in the file, before anything was joined or left out
+  std::size_t vertices = 0, triangles = 0, tets = 0, wedges = 0;
+  int order = 1;             ///< 2: tets of 10 nodes
+  std::string labels;        ///< where its labels came from, and which label of the input each stands for
+  std::string space;         ///< "lps", "ras" or "none"
+  std::string space_reason;  ///< why that one
   std::string sha256;
 };
 
@@ -84,7 +85,7 @@ struct FemStep {
   std::string name;
   bool frequency = false, large_displacements = false;
   std::size_t supports = 0, loaded_nodes = 0, pressures = 0;
-  Vec3 force_n;        ///< sum of all forces and pressures, on the faces as they lie; without gravity
+  Vec3 force_n;  ///< sum of all forces and pressures, on the faces as they lie; without gravity
   Vec3 gravity_mm_s2;
 };
 
@@ -101,15 +102,15 @@ struct FemAccuracy {
 struct FemReport {
   int order = 2;
   std::size_t nodes = 0, elements = 0, shells = 0;
-  std::size_t wedges = 0;  ///< of the elements, with pyramids
+  std::size_t wedges = 0;             ///< of the elements, with pyramids
   std::string image, materials_path;  ///< "": none
   bool placeholder_materials = false;
   std::vector<FemSet> sets;
   std::vector<SurfacePair> pairs;
   std::vector<MaterialRow> materials;
   std::vector<std::pair<std::string, double>> skins;  ///< name, thickness in mm
-  std::size_t supports = 0, loaded_nodes = 0;  ///< of the first step
-  Vec3 force_n;                                ///< of the first step
+  std::size_t supports = 0, loaded_nodes = 0;         ///< of the first step
+  Vec3 force_n;                                       ///< of the first step
   std::vector<FemStep> steps;
   std::vector<Body> bodies;  ///< the largest first
   std::optional<FemAccuracy> accuracy;
@@ -122,8 +123,8 @@ struct RunReport {
   std::vector<std::pair<std::string, std::string>> options;  ///< as given or defaulted
   struct {
     std::string path, kind;
-    std::vector<std::string> files;                     ///< of an input of several; path joins them
-    std::array<int, 3> dimensions = {0, 0, 0};          ///< 0: no grid (contours)
+    std::vector<std::string> files;             ///< of an input of several; path joins them
+    std::array<int, 3> dimensions = {0, 0, 0};  ///< 0: no grid (contours)
     std::array<double, 3> spacing_mm = {0, 0, 0};
     std::array<double, 3> effective_spacing_mm = {0, 0, 0};  ///< of the voxels on which the labels were made
     std::string axis = "z", space = "lps";
@@ -142,8 +143,8 @@ struct RunReport {
   std::optional<Bends> bends;  ///< of the whole surface
   std::optional<VolumeCheck> volume;
   std::vector<LayerFigures> layers;  ///< of wedges, by label; places in the world
-  std::string closure = "skipped";  ///< verified, failed or skipped
-  std::optional<FemReport> fem;     ///< of `fem` only
+  std::string closure = "skipped";   ///< verified, failed or skipped
+  std::optional<FemReport> fem;      ///< of `fem` only
   std::vector<LabelReport> labels;
   std::optional<JudgedMesh> mesh;  ///< of `validate`
   std::optional<Provenance> provenance;

@@ -34,8 +34,9 @@ SliceStrides strides_of(const LabelVolume& volume, int stack_axis) {
 
 }  // namespace
 
-std::vector<std::string> cut_complex(const InterfaceComplex& complex, const Frame& frame, const std::vector<double>& heights,
-                                     const LabelIndex& index, const CurveDrawing& drawing) {
+std::vector<std::string> cut_complex(const InterfaceComplex& complex, const Frame& frame,
+                                     const std::vector<double>& heights, const LabelIndex& index,
+                                     const CurveDrawing& drawing) {
   std::vector<Vec3> points(complex.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = frame.to_stack(complex.points[i]);
   const bool mirrored = frame.mirrors();
@@ -85,13 +86,15 @@ std::vector<std::string> cut_complex(const InterfaceComplex& complex, const Fram
   return packed;
 }
 
-std::string draw_section(const Stack& stack, const Section& section, const LabelIndex& index, const CurveDrawing& drawing) {
+std::string draw_section(const Stack& stack, const Section& section, const LabelIndex& index,
+                         const CurveDrawing& drawing) {
   std::vector<CurveSegment> segments;
   for (const SectionEdge& e : section.edges) {
     const auto at = [&](std::int32_t p) {
       return std::array<double, 2>{section.points[p].x * stack.grid_x_mm, section.points[p].y * stack.grid_y_mm};
     };
-    segments.push_back({index(e.left), index(e.right), static_cast<std::uint64_t>(e.a), static_cast<std::uint64_t>(e.b), at(e.a), at(e.b)});
+    segments.push_back({index(e.left), index(e.right), static_cast<std::uint64_t>(e.a), static_cast<std::uint64_t>(e.b),
+                        at(e.a), at(e.b)});
   }
   Bytes bytes;
   pack(join_segments(std::move(segments), drawing.unit_mm, drawing.tolerance_mm), bytes);

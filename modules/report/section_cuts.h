@@ -18,11 +18,13 @@ struct CurveDrawing {
 /// The cut of the whole complex with each plane z = height (ascending) of the frame's stack coordinates: packed
 /// polylines (polylines.h) per plane. A vertex on a plane counts as above it, so a flat face in the plane gives
 /// the cut just beneath it.
-std::vector<std::string> cut_complex(const InterfaceComplex& complex, const Frame& frame, const std::vector<double>& heights,
-                                     const LabelIndex& index, const CurveDrawing& drawing);
+std::vector<std::string> cut_complex(const InterfaceComplex& complex, const Frame& frame,
+                                     const std::vector<double>& heights, const LabelIndex& index,
+                                     const CurveDrawing& drawing);
 
 /// The edges of a contour section as packed polylines.
-std::string draw_section(const Stack& stack, const Section& section, const LabelIndex& index, const CurveDrawing& drawing);
+std::string draw_section(const Stack& stack, const Section& section, const LabelIndex& index,
+                         const CurveDrawing& drawing);
 
 /// A window of in-plane pixels: [x, x + width) by [y, y + height).
 struct PixelWindow {

@@ -7,7 +7,9 @@
 
 namespace stackmesh {
 
-inline double angle_deg(const Vec3& u, const Vec3& v) { return 57.295779513082320877 * std::atan2(norm(cross(u, v)), dot(u, v)); }
+inline double angle_deg(const Vec3& u, const Vec3& v) {
+  return 57.295779513082320877 * std::atan2(norm(cross(u, v)), dot(u, v));
+}
 
 /// The angles of a triangle at a, b, c, degrees.
 inline std::array<double, 3> triangle_angles_deg(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -8,7 +8,9 @@
 namespace stackmesh {
 namespace {
 
-std::array<double, 3> key(Vec3 p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }  // -0 is 0
+std::array<double, 3> key(Vec3 p) {
+  return {p.x + 0.0, p.y + 0.0, p.z + 0.0};
+}  // -0 is 0
 
 std::array<Vec3, 3> sorted(std::array<Vec3, 3> corners) {
   std::sort(corners.begin(), corners.end(), [](Vec3 a, Vec3 b) { return key(a) < key(b); });
@@ -16,9 +18,13 @@ std::array<Vec3, 3> sorted(std::array<Vec3, 3> corners) {
 }
 
 using Key = std::array<std::array<double, 3>, 3>;
-Key key(const std::array<Vec3, 3>& c) { return {key(c[0]), key(c[1]), key(c[2])}; }
+Key key(const std::array<Vec3, 3>& c) {
+  return {key(c[0]), key(c[1]), key(c[2])};
+}
 
-std::uint8_t step(double share) { return static_cast<std::uint8_t>(1 + std::lround(254 * std::clamp(share, 0.0, 1.0))); }
+std::uint8_t step(double share) {
+  return static_cast<std::uint8_t>(1 + std::lround(254 * std::clamp(share, 0.0, 1.0)));
+}
 
 }  // namespace
 
@@ -51,7 +57,8 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
     }
   if (!mises_mpa.empty()) {  // a few nodes at the end of a support must not make the rest pale
     std::vector<double> order = mises_mpa;
-    const auto at = order.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.995 * static_cast<double>(order.size()))) - 1;
+    const auto at =
+        order.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.995 * static_cast<double>(order.size()))) - 1;
     std::nth_element(order.begin(), at, order.end());
     out.mises_high_mpa = *at;
   }
@@ -59,7 +66,8 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
   // A face shows the smallest set that it is in: the larger ones are seen around it.
   std::vector<const FaceSet*> by_size;
   for (const FaceSet& s : sets.surfaces) by_size.push_back(&s);
-  std::stable_sort(by_size.begin(), by_size.end(), [](const FaceSet* a, const FaceSet* b) { return a->faces.size() > b->faces.size(); });
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [](const FaceSet* a, const FaceSet* b) { return a->faces.size() > b->faces.size(); });
   if (by_size.size() > 250) by_size.erase(by_size.begin(), by_size.end() - 250);
   std::map<Key, std::size_t> place;
   for (const FaceSet* s : by_size) {
@@ -69,7 +77,9 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
       std::array<std::int32_t, 3> nodes;
       for (int k = 0; k < 3; ++k) {
         const auto element = static_cast<std::size_t>(f.tet);
-        nodes[k] = model.mesh.is_wedge(element) ? model.mesh.wedges[element - model.mesh.tets.size()][kWedgeFaces[f.face][k]] : model.mesh.tets[element][kTetFaces[f.face][k]];
+        nodes[k] = model.mesh.is_wedge(element)
+                       ? model.mesh.wedges[element - model.mesh.tets.size()][kWedgeFaces[f.face][k]]
+                       : model.mesh.tets[element][kTetFaces[f.face][k]];
         corners[k] = model.mesh.points[nodes[k]];
       }
       corners = sorted(corners);
@@ -80,8 +90,12 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
         const auto all = [&](const std::vector<char>& of) { return of[nodes[0]] && of[nodes[1]] && of[nodes[2]]; };
         if (all(kept)) v.acts |= 1;
         if (!modulus.empty() && modulus[f.tet] > 0)
-          v.modulus = step(out.modulus_high_mpa > out.modulus_low_mpa ? std::log(modulus[f.tet] / out.modulus_low_mpa) / std::log(out.modulus_high_mpa / out.modulus_low_mpa) : 1);
-        if (out.mises_high_mpa > 0) v.mises = step((mises_mpa[nodes[0]] + mises_mpa[nodes[1]] + mises_mpa[nodes[2]]) / 3 / out.mises_high_mpa);
+          v.modulus =
+              step(out.modulus_high_mpa > out.modulus_low_mpa ? std::log(modulus[f.tet] / out.modulus_low_mpa) /
+                                                                    std::log(out.modulus_high_mpa / out.modulus_low_mpa)
+                                                              : 1);
+        if (out.mises_high_mpa > 0)
+          v.mises = step((mises_mpa[nodes[0]] + mises_mpa[nodes[1]] + mises_mpa[nodes[2]]) / 3 / out.mises_high_mpa);
         out.values.push_back(v);
       }
       TriangleValues& v = out.values[at->second];

@@ -21,14 +21,15 @@ struct TriangleValues {
 struct SurfaceValues {
   std::vector<std::string> sets;
   double modulus_low_mpa = 0, modulus_high_mpa = 0, mises_high_mpa = 0;  ///< 0: there are none
-  std::vector<std::array<Vec3, 3>> corners;  ///< of every face of a set, sorted
-  std::vector<TriangleValues> values;        ///< of each
+  std::vector<std::array<Vec3, 3>> corners;                              ///< of every face of a set, sorted
+  std::vector<TriangleValues> values;                                    ///< of each
 };
 
 /// @param mises_mpa of each node, of a solution; empty: none is known
 SurfaceValues surface_values(const SolverModel& model, const std::vector<double>& mises_mpa);
 
-/// The values of each triangle of a surface whose points are the model's; nothing where fewer than half of them are its faces.
+/// The values of each triangle of a surface whose points are the model's; nothing where fewer than half of them are its
+/// faces.
 std::vector<TriangleValues> values_on(const InterfaceComplex& surface, const SurfaceValues& values);
 
 }  // namespace stackmesh

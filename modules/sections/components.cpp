@@ -26,8 +26,7 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
         x += 3;
         continue;
       }
-      if (low[x] == low[x + 1] || low[x] == high[x] || low[x + 1] == high[x + 1] || high[x] == high[x + 1])
-        continue;
+      if (low[x] == low[x + 1] || low[x] == high[x] || low[x + 1] == high[x + 1] || high[x] == high[x + 1]) continue;
       for (int left : {0, 1}) {  // the diagonals (x, y)-(x + 1, y + 1) and (x + 1, y)-(x, y + 1)
         const int right = 1 - left;
         const std::uint16_t label = low[x + left];
@@ -35,7 +34,8 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
         const int low_touches = slice.at(x + left, y) == label, high_touches = slice.at(x + right, y + 1) == label;
         if (low_touches + high_touches == 0) continue;
         if (components.of(x + left, y, other_k) != components.of(x + right, y + 1, other_k))
-          corners.push_back({corner_key(x + 1, y + 1), static_cast<std::uint8_t>(low_touches << left | high_touches << (right + 2))});
+          corners.push_back(
+              {corner_key(x + 1, y + 1), static_cast<std::uint8_t>(low_touches << left | high_touches << (right + 2))});
       }
     }
   }
@@ -43,15 +43,14 @@ void touching_beside(const VoxelComponents& components, const Slice& slice, cons
 
 }  // namespace
 
-void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other,
-                      int other_k, std::vector<TouchingCorner>& corners) {
+void touching_corners(const VoxelComponents& components, const Slice& slice, int k, const Slice& other, int other_k,
+                      std::vector<TouchingCorner>& corners) {
   touching_beside(components, slice, other, other_k, corners);
   for (int y = 0; y < slice.height; ++y) {
     const std::uint16_t* row = &slice.pixels[static_cast<std::size_t>(y) * slice.width];
     const std::uint16_t* across = &other.pixels[static_cast<std::size_t>(y) * slice.width];
     for (int x = 0; x < slice.width; ++x) {
-      if (x + 4 <= slice.width &&
-          (four_pixels(row + x) == 0 || four_pixels(row + x) == four_pixels(across + x))) {
+      if (x + 4 <= slice.width && (four_pixels(row + x) == 0 || four_pixels(row + x) == four_pixels(across + x))) {
         x += 3;
         continue;
       }
@@ -65,7 +64,8 @@ void touching_corners(const VoxelComponents& components, const Slice& slice, int
           // The corners that pixel (x, y) shares with its neighbour.
           for (int cy = std::max(0, dy); cy <= std::min(1, 1 + dy); ++cy)
             for (int cx = std::max(0, dx); cx <= std::min(1, 1 + dx); ++cx)
-              corners.push_back({corner_key(x + cx, y + cy), static_cast<std::uint8_t>(1 << ((1 - cx) + 2 * (1 - cy)))});
+              corners.push_back(
+                  {corner_key(x + cx, y + cy), static_cast<std::uint8_t>(1 << ((1 - cx) + 2 * (1 - cy)))});
         }
     }
   }

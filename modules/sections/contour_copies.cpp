@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+
 #include "sections/point_in_polygon.h"
 
 namespace stackmesh {
@@ -72,7 +73,9 @@ bool are_copies(const Points& a, const Points& b) {
 /// A contour drawn round twice without a break.
 bool goes_round_twice(const Points& p) {
   const std::size_t half = p.size() / 2;
-  return half >= 3 && p.size() == 2 * half && std::equal(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(half), p.begin() + static_cast<std::ptrdiff_t>(half));
+  return half >= 3 && p.size() == 2 * half &&
+         std::equal(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(half),
+                    p.begin() + static_cast<std::ptrdiff_t>(half));
 }
 
 }  // namespace
@@ -85,9 +88,10 @@ std::size_t remove_copies(std::vector<ContourPolygon>& polygons) {
       points.resize(points.size() / 2);
       ++removed;
     }
-    const bool copy = points.size() > 2 && std::any_of(polygons.begin(), polygons.begin() + static_cast<std::ptrdiff_t>(kept), [&](const ContourPolygon& p) {
-                        return p.points.size() > 2 && are_copies(p.points, points);
-                      });
+    const bool copy =
+        points.size() > 2 &&
+        std::any_of(polygons.begin(), polygons.begin() + static_cast<std::ptrdiff_t>(kept),
+                    [&](const ContourPolygon& p) { return p.points.size() > 2 && are_copies(p.points, points); });
     if (copy) {
       ++removed;
       continue;

@@ -28,7 +28,8 @@ double area_of(const Cdt& cdt, FaceHandle f) {
 }
 
 /// Joins directed edges to closed walks; every vertex has as many coming in as going out.
-std::vector<std::vector<GridPoint>> walk(const std::vector<GridPoint>& points, std::multimap<std::int32_t, std::int32_t> next) {
+std::vector<std::vector<GridPoint>> walk(const std::vector<GridPoint>& points,
+                                         std::multimap<std::int32_t, std::int32_t> next) {
   std::vector<std::vector<GridPoint>> loops;
   while (!next.empty()) {
     std::vector<GridPoint> loop;

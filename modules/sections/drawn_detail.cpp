@@ -111,7 +111,8 @@ double drawn_bulge_mm(const Stack& stack) {
   std::vector<Weighted> bulges;
   for (const Section& s : stack.sections) {
     if (s.interpolated) continue;
-    std::vector<std::array<std::int32_t, 2>> edges_of(s.points.size(), {-1, -1});  // of a point where two edges meet, else the first two
+    // of a point where two edges meet, else the first two
+    std::vector<std::array<std::int32_t, 2>> edges_of(s.points.size(), {-1, -1});
     std::vector<char> passes(s.points.size(), 0);
     for (std::size_t e = 0; e < s.edges.size(); ++e)
       for (std::int32_t v : {s.edges[e].a, s.edges[e].b}) {

@@ -12,10 +12,10 @@
 namespace stackmesh {
 namespace {
 
-constexpr double kJitter_rel = 0.03;    // of the smallest gap: heights of different labels that are one
+constexpr double kJitter_rel = 0.03;     // of the smallest gap: heights of different labels that are one
 constexpr double kOwnJitter_rel = 0.01;  // of a label's gap
-constexpr double kSameEnd_rel = 0.02;   // of half a gap: ends so near a section lie on it
-constexpr double kLongGap_rel = 1.5;    // of its usual gap: a longer last gap is one with sections missing
+constexpr double kSameEnd_rel = 0.02;    // of half a gap: ends so near a section lie on it
+constexpr double kLongGap_rel = 1.5;     // of its usual gap: a longer last gap is one with sections missing
 
 using Point = std::array<double, 2>;
 
@@ -46,7 +46,8 @@ double filled_area(const ContourSection& s) {
     const std::vector<Point>& points = s.polygons[p].points;
     if (points.size() < 3) continue;
     bool inner = false;
-    for (std::size_t q = 0; q < s.polygons.size() && !inner; ++q) inner = q != p && s.polygons[q].points.size() > 2 && is_inside(points[0], s.polygons[q].points);
+    for (std::size_t q = 0; q < s.polygons.size() && !inner; ++q)
+      inner = q != p && s.polygons[q].points.size() > 2 && is_inside(points[0], s.polygons[q].points);
     if (inner) continue;
     double twice = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -68,7 +69,8 @@ std::vector<const ContourSection*> filled_sections(const LabelContours& f) {
 
 class EndMaker {
  public:
-  EndMaker(std::vector<LabelContours>& files, const ContourStackOptions& options) : files_(files), o_(options), smallest_(smallest_usual_gap(files)) {
+  EndMaker(std::vector<LabelContours>& files, const ContourStackOptions& options)
+      : files_(files), o_(options), smallest_(smallest_usual_gap(files)) {
     for (const LabelContours& f : files_)
       for (const ContourSection& s : f.sections) heights_.push_back(s.z_mm);
     std::sort(heights_.begin(), heights_.end());
@@ -129,18 +131,20 @@ class EndMaker {
 
   static double beyond(const DrawnEnd& e, bool high, double way) { return e.contour_mm + (high ? way : -way); }
 
-  /// Slices end flat half a gap beyond their last one. At the end of the stack the stitcher sees to that, if the gaps there are the
-  /// label's own; else a section on the end itself does.
+  /// Slices end flat half a gap beyond their last one. At the end of the stack the stitcher sees to that, if the gaps
+  /// there are the label's own; else a section on the end itself does.
   void place_flat(std::vector<DrawnEnds>& ends, bool high) {
     if (!o_.slices) return;
     const double top = high ? heights_.back() : heights_.front();
-    const double joint = heights_.size() > 1 ? std::abs(top - (high ? heights_[heights_.size() - 2] : heights_[1])) / 2 : 0;
+    const double joint =
+        heights_.size() > 1 ? std::abs(top - (high ? heights_[heights_.size() - 2] : heights_[1])) / 2 : 0;
     bool any = false;
     for (const DrawnEnds& both : ends) {
       const DrawnEnd& e = high ? both.high : both.low;
       if (!e.flat) continue;
       const bool at_top = e.contour_mm == top;
-      any = any || (at_top ? std::abs(joint - e.half_gap_mm) > kSameEnd_rel * e.half_gap_mm : (high ? 1 : -1) * (beyond(e, high, e.half_gap_mm) - top) > 0);
+      any = any || (at_top ? std::abs(joint - e.half_gap_mm) > kSameEnd_rel * e.half_gap_mm
+                           : (high ? 1 : -1) * (beyond(e, high, e.half_gap_mm) - top) > 0);
     }
     std::vector<double> added;
     for (DrawnEnds& both : ends) {
@@ -171,11 +175,13 @@ class EndMaker {
     // Its own empty sections there give way.
     f.sections.erase(std::remove_if(f.sections.begin(), f.sections.end(),
                                     [&](const ContourSection& s) {
-                                      return std::any_of(made.begin(), made.end(), [&](const ContourSection& m) { return m.z_mm == s.z_mm; });
+                                      return std::any_of(made.begin(), made.end(),
+                                                         [&](const ContourSection& m) { return m.z_mm == s.z_mm; });
                                     }),
                      f.sections.end());
     f.sections.insert(f.sections.end(), made.begin(), made.end());
-    std::stable_sort(f.sections.begin(), f.sections.end(), [](const ContourSection& a, const ContourSection& b) { return a.z_mm < b.z_mm; });
+    std::stable_sort(f.sections.begin(), f.sections.end(),
+                     [](const ContourSection& a, const ContourSection& b) { return a.z_mm < b.z_mm; });
   }
 
   std::vector<LabelContours>& files_;
@@ -210,11 +216,14 @@ void align_heights(std::vector<LabelContours>& files, double same_height_mm) {
   std::vector<Height> all;
   for (std::size_t f = 0; f < files.size(); ++f)
     for (ContourSection& s : files[f].sections) all.push_back({s.z_mm, f, &s});
-  std::sort(all.begin(), all.end(), [](const Height& a, const Height& b) { return a.z != b.z ? a.z < b.z : a.file < b.file; });
+  std::sort(all.begin(), all.end(),
+            [](const Height& a, const Height& b) { return a.z != b.z ? a.z < b.z : a.file < b.file; });
   for (std::size_t i = 0, j; i < all.size(); i = j) {
     std::vector<std::size_t> members;
     double sum = 0;
-    for (j = i; j < all.size() && all[j].z - all[i].z <= tolerance && std::find(members.begin(), members.end(), all[j].file) == members.end(); ++j) {
+    for (j = i; j < all.size() && all[j].z - all[i].z <= tolerance &&
+                std::find(members.begin(), members.end(), all[j].file) == members.end();
+         ++j) {
       members.push_back(all[j].file);
       sum += all[j].z;
     }
@@ -223,6 +232,8 @@ void align_heights(std::vector<LabelContours>& files, double same_height_mm) {
   }
 }
 
-std::vector<DrawnEnds> extend_ends(std::vector<LabelContours>& files, const ContourStackOptions& options) { return EndMaker(files, options).run(); }
+std::vector<DrawnEnds> extend_ends(std::vector<LabelContours>& files, const ContourStackOptions& options) {
+  return EndMaker(files, options).run();
+}
 
 }  // namespace stackmesh

@@ -8,9 +8,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "model/slices.h"
 #include "sections/arcs.h"
 #include "sections/components.h"
-#include "model/slices.h"
 
 namespace stackmesh {
 namespace {
@@ -23,11 +23,14 @@ std::vector<Label> labels_in(const Slice& slice, const LabelVolume& volume) {
   return out;
 }
 
-Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px, bool free, bool middles, double z_mm) {
+Section make_section(const SliceArcs& traced, const LabelVolume& volume, double simplify_px, double longest_px,
+                     bool free, bool middles, double z_mm) {
   std::vector<std::vector<GridPoint>> kept =
-      free ? simplify_free_arcs(traced.arcs, simplify_px * kGridPerPixel, longest_px) : simplify_arcs(traced.arcs, simplify_px, longest_px);
+      free ? simplify_free_arcs(traced.arcs, simplify_px * kGridPerPixel, longest_px)
+           : simplify_arcs(traced.arcs, simplify_px, longest_px);
   if (middles) {
-    // An edge from junction to junction has no vertex that could leave the section's plane: a label above and below it would touch itself.
+    // An edge from junction to junction has no vertex that could leave the section's plane: a label above and below it
+    // would touch itself.
     for (auto& arc : kept)
       if (arc.size() == 2 && arc[0] != arc[1] && (arc[0].x + arc[1].x) % 2 == 0 && (arc[0].y + arc[1].y) % 2 == 0)
         arc.insert(arc.begin() + 1, {(arc[0].x + arc[1].x) / 2, (arc[0].y + arc[1].y) / 2});
@@ -43,8 +46,7 @@ Section make_section(const SliceArcs& traced, const LabelVolume& volume, double 
     return it->second;
   };
   for (std::size_t a = 0; a < traced.arcs.size(); ++a) {
-    const Label left = volume.labels[traced.arcs[a].left].number,
-                right = volume.labels[traced.arcs[a].right].number;
+    const Label left = volume.labels[traced.arcs[a].left].number, right = volume.labels[traced.arcs[a].right].number;
     for (std::size_t i = 0; i + 1 < kept[a].size(); ++i)
       section.edges.push_back({id_of(kept[a][i]), id_of(kept[a][i + 1]), left, right});
   }
@@ -63,12 +65,15 @@ int stacking_axis(const LabelVolume& volume, StackAxis axis) {
   };
   const int best = coarsest([](int) { return true; });
   // A slab of one slice is a stack along another axis; a picture, or a slice of cubes, is refused as what it is.
-  const bool is_slab = volume.size[best] == 1 && volume.kind != "slices" && *std::min_element(volume.spacing_mm.begin(), volume.spacing_mm.end()) * 1.01 < volume.spacing_mm[best];
+  const bool is_slab =
+      volume.size[best] == 1 && volume.kind != "slices" &&
+      *std::min_element(volume.spacing_mm.begin(), volume.spacing_mm.end()) * 1.01 < volume.spacing_mm[best];
   const int other = is_slab ? coarsest([&](int a) { return volume.size[a] > 1; }) : -1;
   return other >= 0 ? other : best;
 }
 
-ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Monitor& progress, const FairedLabels* faired) {
+ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Monitor& progress,
+                               const FairedLabels* faired) {
   ContourResult result;
   result.axis = stacking_axis(volume, options.axis);
   const StackAxes axes = axes_for(result.axis);
@@ -113,7 +118,8 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
     rules.hold = !free;
     SliceArcs traced = trace_arcs(slice, rules);
     if (free) untangle(traced.arcs);
-    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0, free, faired != nullptr, k * volume.spacing_mm[axes.w]);
+    stack.sections[k] = make_section(traced, volume, options.simplify_px, faired != nullptr ? options.longest_px : 0,
+                                     free, faired != nullptr, k * volume.spacing_mm[axes.w]);
     stack.sections[k].interpolated = k % period != 0;
     loops[k] = traced.loops;
     for (const Arc& arc : traced.arcs) traced_vertices[k] += arc.chain.size() - 1;
@@ -123,8 +129,7 @@ ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& 
   };
   parallel_for((count + step - 1) / step, options.threads, [&](std::size_t block) {
     const int first = static_cast<int>(block) * step, last = std::min(count, first + step);
-    const int begin = std::max(0, first - 1),
-              end = std::min(count, last + 1);  // with a neighbour on either side
+    const int begin = std::max(0, first - 1), end = std::min(count, last + 1);  // with a neighbour on either side
     const std::vector<Slice> slices = read_slices(volume, axes, begin, end);
     for (int k = first; k < last; ++k)
       extract(slices[k - begin], k, k > begin ? &slices[k - begin - 1] : nullptr,

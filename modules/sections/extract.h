@@ -16,12 +16,11 @@ constexpr std::int32_t kGridPerPixel = 1024;  ///< grid units in a pixel
 enum class StackAxis { automatic, x, y, z };
 
 struct ContourOptions {
-  StackAxis axis =
-      StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
-  double simplify_px = 0.5;  ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
-  double longest_px = 4;     ///< about the longest edge that simplification makes of faired contours, in pixels
-  int virtual_per_gap = 0;    ///< slices of the volume that are interpolated between each two real ones
-  int threads = 0;           ///< 0: all
+  StackAxis axis = StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
+  double simplify_px = 0.5;               ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
+  double longest_px = 4;    ///< about the longest edge that simplification makes of faired contours, in pixels
+  int virtual_per_gap = 0;  ///< slices of the volume that are interpolated between each two real ones
+  int threads = 0;          ///< 0: all
 };
 
 struct ContourResult {

@@ -24,7 +24,8 @@ std::string far_sections(const Stack& stack, const InterfaceComplex& stitched) {
     low_x = std::min(low_x, p.x), high_x = std::max(high_x, p.x);
     low_y = std::min(low_y, p.y), high_y = std::max(high_y, p.y);
   }
-  for (std::size_t k = 1; k < stack.sections.size(); ++k) gap = std::max(gap, stack.sections[k].z_mm - stack.sections[k - 1].z_mm);
+  for (std::size_t k = 1; k < stack.sections.size(); ++k)
+    gap = std::max(gap, stack.sections[k].z_mm - stack.sections[k - 1].z_mm);
   const double width = std::max(high_x - low_x, high_y - low_y);
   if (stitched.points.empty() || gap <= kFar * width) return "";
   char text[120];

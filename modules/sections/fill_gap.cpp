@@ -98,8 +98,8 @@ class GapFiller {
     const auto field = [&](const Partition& part, std::int32_t id) {
       return GroupField(part, id, width_, height_, pixel_mm_, gap_.gap_mm);
     };
-    const bool one_label = std::all_of(groups.begin() + 1, groups.end(),
-                                       [&](const Group& g) { return g.label == groups[1].label; });
+    const bool one_label =
+        std::all_of(groups.begin() + 1, groups.end(), [&](const Group& g) { return g.label == groups[1].label; });
     if (one_label) {
       for (std::size_t g = 1; g < groups.size(); ++g)
         bodies_.push_back({field(labels_, static_cast<std::int32_t>(g)), {static_cast<std::int32_t>(g)}, {}});
@@ -146,7 +146,8 @@ class GapFiller {
     const Box& box = body.outline.box();
     body.outline.blend(t, tension_, gap_.neighbours_rel, gap_.end_at, steps, outline_);
     if (depth_)
-      for_pixels(box, [&](std::size_t p, std::size_t i) { nearest_outline_[p] = std::max(nearest_outline_[p], outline_[i]); });
+      for_pixels(
+          box, [&](std::size_t p, std::size_t i) { nearest_outline_[p] = std::max(nearest_outline_[p], outline_[i]); });
     if (body.fields.empty()) {
       for_pixels(box, [&](std::size_t p, std::size_t i) {
         if (outline_[i] <= height[p]) return;
@@ -183,7 +184,10 @@ class GapFiller {
       layer[p] = best_group_[i];
       if (!depth_) return;
       placed_[p] = best_group_[i];
-      margin_[p] = second_[i] == kLowest ? kHighest : static_cast<int>(std::min<std::int64_t>(kHighest, static_cast<std::int64_t>(best_[i]) - second_[i]));
+      margin_[p] =
+          second_[i] == kLowest
+              ? kHighest
+              : static_cast<int>(std::min<std::int64_t>(kHighest, static_cast<std::int64_t>(best_[i]) - second_[i]));
     });
   }
 

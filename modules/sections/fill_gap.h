@@ -11,8 +11,8 @@ namespace stackmesh::interpolate {
 struct Gap {
   const Pixels *before = nullptr, *low = nullptr, *high = nullptr, *after = nullptr;
   std::array<double, 2> neighbours_rel = {1, 1};  ///< the gaps beneath and above, as a share of this one
-  double end_at = 0.5;  ///< share of the gap at which a part without counterpart closes,
-  double gap_mm = 0;    ///< where this is 0; else parts close where their areas in the two slices before say
+  double end_at = 0.5;                            ///< share of the gap at which a part without counterpart closes,
+  double gap_mm = 0;  ///< where this is 0; else parts close where their areas in the two slices before say
 };
 
 /// How far a virtual layer's pixels are inside or outside, in pixels, 0 where it is not known.

@@ -4,9 +4,9 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "model/slices.h"
 #include "sections/extract.h"
 #include "sections/section_raster.h"
-#include "model/slices.h"
 
 namespace stackmesh {
 namespace {
@@ -31,7 +31,9 @@ class Pieces {
       if (other >= 0) join(here, other);
   }
   std::int32_t begin(std::size_t row) const { return start_[row]; }
-  std::int32_t end(std::size_t row) const { return row + 1 < start_.size() ? start_[row + 1] : static_cast<std::int32_t>(runs_.size()); }
+  std::int32_t end(std::size_t row) const {
+    return row + 1 < start_.size() ? start_[row + 1] : static_cast<std::int32_t>(runs_.size());
+  }
   const Run& run(std::int32_t r) const { return runs_[r]; }
   std::int32_t piece(std::int32_t r) { return sets_.find(r); }
   std::size_t runs() const { return runs_.size(); }
@@ -55,7 +57,8 @@ Pieces pieces_of(const std::vector<Slice>& slices) {
   for (std::size_t k = 0; k < slices.size(); ++k)
     for (std::ptrdiff_t y = 0; y < height; ++y) {
       const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(k) * height + y;
-      out.add_row(&slices[k].pixels[static_cast<std::size_t>(y) * slices[k].width], slices[k].width, y > 0 ? row - 1 : -1, k > 0 ? row - height : -1);
+      out.add_row(&slices[k].pixels[static_cast<std::size_t>(y) * slices[k].width], slices[k].width,
+                  y > 0 ? row - 1 : -1, k > 0 ? row - height : -1);
     }
   return out;
 }
@@ -85,10 +88,12 @@ bool one_to_one(Pieces& a, Pieces& b, std::size_t rows) {
 
 }  // namespace
 
-std::vector<int> gaps_with_other_pieces(const LabelVolume& dense, int stacking_axis, int period, const Stack& stack, int threads) {
+std::vector<int> gaps_with_other_pieces(const LabelVolume& dense, int stacking_axis, int period, const Stack& stack,
+                                        int threads) {
   const StackAxes axes = axes_for(stacking_axis);
   std::map<Label, std::uint16_t> index_of;
-  for (std::size_t k = 0; k < dense.labels.size(); ++k) index_of[dense.labels[k].number] = static_cast<std::uint16_t>(k);
+  for (std::size_t k = 0; k < dense.labels.size(); ++k)
+    index_of[dense.labels[k].number] = static_cast<std::uint16_t>(k);
   const int gaps = (dense.size[axes.w] - 1) / period;
   std::vector<char> other(gaps, 0);
   parallel_for(other.size(), threads, [&](std::size_t g) {
@@ -111,8 +116,8 @@ std::vector<int> gaps_with_other_pieces(const LabelVolume& dense, int stacking_a
       return one_to_one(a, b, old.size() * static_cast<std::size_t>(raster.height));
     };
     other[g] = !same_pieces(before, after);
-    for (int k = 1; k < period && !other[g]; ++k)  // an island that holds no pixel centre any more would be a piece of its own
-      other[g] = !same_pieces({before[k]}, {after[k]});
+    // an island that holds no pixel centre any more would be a piece of its own
+    for (int k = 1; k < period && !other[g]; ++k) other[g] = !same_pieces({before[k]}, {after[k]});
   });
   std::vector<int> out;
   for (int g = 0; g < gaps; ++g)

@@ -6,13 +6,14 @@
 namespace stackmesh::interpolate {
 namespace {
 
-constexpr int kMargin = 3;            // pixels round a group that the spline may reach by overshooting
-constexpr double kFullMotion = 0.05;  // relative gain of overlap from which a group follows its centre fully
+constexpr int kMargin = 3;                   // pixels round a group that the spline may reach by overshooting
+constexpr double kFullMotion = 0.05;         // relative gain of overlap from which a group follows its centre fully
 constexpr double kNear = 0.25, kFar = 0.45;  // motion, in widths of the smaller slice: not followed, followed fully
-constexpr double kNoBall_rel = 0.7;  // a slice of so large a share of the area of that before it may be where a body was cut
+// a slice of so large a share of the area of that before it may be where a body was cut
+constexpr double kNoBall_rel = 0.7;
 constexpr double kNearestEnd = 0.2, kFurthestEnd = 0.95;  // shares of a gap
 
-constexpr double kShortest = 0.25;    // neighbouring gaps count as no shorter than this share of the gap
+constexpr double kShortest = 0.25;  // neighbouring gaps count as no shorter than this share of the gap
 
 /// Weights of four slices at t between the second and the third: a cardinal spline; the slopes are those of
 /// parabolas through three slices, so that unevenly spaced slices are no matter.
@@ -77,7 +78,8 @@ double enclosed_pixels(const Islands& islands, int width, const Belongs& belongs
   std::vector<std::uint8_t> closed(static_cast<std::size_t>(wide) * high, 0);
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x)
-      closed[static_cast<std::size_t>(y - box.y0 + 1) * wide + (x - box.x0 + 1)] = belongs(islands.of[static_cast<std::size_t>(y) * width + x]);
+      closed[static_cast<std::size_t>(y - box.y0 + 1) * wide + (x - box.x0 + 1)] =
+          belongs(islands.of[static_cast<std::size_t>(y) * width + x]);
   std::vector<std::size_t> open = {0};
   closed[0] = 1;
   std::size_t outside = 1;
@@ -99,8 +101,8 @@ double enclosed_pixels(const Islands& islands, int width, const Belongs& belongs
   return static_cast<double>(closed.size() - outside);
 }
 
-/// Where in the gap beyond a slice of this area a ball ends that has the other area a gap before it, as a share of the gap; 0 when the
-/// areas do not say: no slice before, or one that is hardly larger.
+/// Where in the gap beyond a slice of this area a ball ends that has the other area a gap before it, as a share of the
+/// gap; 0 when the areas do not say: no slice before, or one that is hardly larger.
 double end_of_ball(double here_mm2, double before_mm2, double gap_mm) {
   if (!(before_mm2 > 0) || here_mm2 >= kNoBall_rel * before_mm2) return 0;
   // A plane a height h below the pole of a ball of radius R has the area pi (2 R h - h^2).
@@ -109,11 +111,13 @@ double end_of_ball(double here_mm2, double before_mm2, double gap_mm) {
 }
 
 /// The share of the gap at which a group ends that only one slice has; 0: not known.
-double where_it_ends(const Partition& part, std::int32_t id, int width, const std::array<double, 2>& pixel_mm, double gap_mm) {
+double where_it_ends(const Partition& part, std::int32_t id, int width, const std::array<double, 2>& pixel_mm,
+                     double gap_mm) {
   const Group& group = part.groups.list[id];
   const bool up = group.high.empty();  // it ends above the lower slice
   const Islands &own = up ? part.low : part.high, &next = up ? part.before : part.after;
-  const std::vector<std::int32_t>&of = up ? part.groups.of_low : part.groups.of_high, &members = up ? group.before : group.after;
+  const std::vector<std::int32_t>&of = up ? part.groups.of_low : part.groups.of_high,
+        &members = up ? group.before : group.after;
   const Box& box = up ? group.low : group.high;
   const auto goes_on = [&](std::int32_t i) {
     if (!members.empty()) return std::find(members.begin(), members.end(), i) != members.end();
@@ -121,7 +125,8 @@ double where_it_ends(const Partition& part, std::int32_t id, int width, const st
     return next.label[i] == group.label && b.x0 <= box.x0 && b.y0 <= box.y0 && b.x1 >= box.x1 && b.y1 >= box.y1;
   };
   const double pixel = pixel_mm[0] * pixel_mm[1];
-  return end_of_ball(pixel * enclosed_pixels(own, width, [&](std::int32_t i) { return of[i] == id; }), pixel * enclosed_pixels(next, width, goes_on), gap_mm);
+  return end_of_ball(pixel * enclosed_pixels(own, width, [&](std::int32_t i) { return of[i] == id; }),
+                     pixel * enclosed_pixels(next, width, goes_on), gap_mm);
 }
 
 }  // namespace
@@ -131,8 +136,7 @@ Partition::Partition(const Gap& gap) {
   high = find_islands(*gap.high);
   if (gap.before != nullptr) before = find_islands(*gap.before);
   if (gap.after != nullptr) after = find_islands(*gap.after);
-  groups = group_islands(low, high, gap.before != nullptr ? &before : nullptr,
-                         gap.after != nullptr ? &after : nullptr);
+  groups = group_islands(low, high, gap.before != nullptr ? &before : nullptr, gap.after != nullptr ? &after : nullptr);
 }
 
 template <class Belongs>
@@ -171,8 +175,8 @@ GroupField::GroupField(const Partition& part, std::int32_t id, int width, int he
   box_ = box_.grown(kMargin, width, height);
   const double everything = std::hypot(width * pixel_mm[0], height * pixel_mm[1]);
   if (!group.low.empty())
-    slices_[1] = slice(part.low, width, box_, everything, pixel_mm,
-                       [&](std::int32_t i) { return part.groups.of_low[i] == id; });
+    slices_[1] =
+        slice(part.low, width, box_, everything, pixel_mm, [&](std::int32_t i) { return part.groups.of_low[i] == id; });
   if (!group.high.empty())
     slices_[2] = slice(part.high, width, box_, everything, pixel_mm,
                        [&](std::int32_t i) { return part.groups.of_high[i] == id; });
@@ -199,8 +203,7 @@ GroupField::GroupField(const Partition& part, std::int32_t id, int width, int he
 
 double GroupField::share_of_motion() const {
   const Slice &low = slices_[1], &high = slices_[2];
-  const int dx = static_cast<int>(std::lround(high.x - low.x)),
-            dy = static_cast<int>(std::lround(high.y - low.y));
+  const int dx = static_cast<int>(std::lround(high.x - low.x)), dy = static_cast<int>(std::lround(high.y - low.y));
   if (dx == 0 && dy == 0) return 0;
   const double still = static_cast<double>(difference(low.field, high.field, 0, 0));
   const double moved = static_cast<double>(difference(low.field, high.field, dx, dy));
@@ -209,11 +212,12 @@ double GroupField::share_of_motion() const {
     return static_cast<double>(std::count_if(f.value.begin(), f.value.end(), [](float d) { return d > 0; }));
   };
   const double widths = std::hypot(dx, dy) / std::sqrt(std::min(pixels(low.field), pixels(high.field)));
-  return std::clamp((1 - moved / still) / kFullMotion, 0.0, 1.0) * std::clamp((widths - kNear) / (kFar - kNear), 0.0, 1.0);
+  return std::clamp((1 - moved / still) / kFullMotion, 0.0, 1.0) *
+         std::clamp((widths - kNear) / (kFar - kNear), 0.0, 1.0);
 }
 
-void GroupField::blend(double t, double tension, const std::array<double, 2>& neighbours_rel,
-                       double end_at, double steps_per_mm, std::vector<int>& out) const {
+void GroupField::blend(double t, double tension, const std::array<double, 2>& neighbours_rel, double end_at,
+                       double steps_per_mm, std::vector<int>& out) const {
   std::array<double, 4> w = {0, 0, 0, 0};
   double sunk = 0;
   if (!slices_[1].present() || !slices_[2].present()) {

@@ -20,8 +20,8 @@ struct Partition {
 class GroupField {
  public:
   /// @param gap_mm height of the gap, 0: not known
-  GroupField(const Partition& part, std::int32_t group, int width, int height,
-             const std::array<double, 2>& pixel_mm, double gap_mm);
+  GroupField(const Partition& part, std::int32_t group, int width, int height, const std::array<double, 2>& pixel_mm,
+             double gap_mm);
 
   /// Where the values are; elsewhere the group is not.
   const Box& box() const { return box_; }
@@ -45,9 +45,9 @@ class GroupField {
 
   Box box_;
   std::array<Slice, 4> slices_;
-  double peak_ = 0;   // of a group that ends in this gap
+  double peak_ = 0;     // of a group that ends in this gap
   double ends_at_ = 0;  // share of the gap at which it closes, 0: not known
-  double share_ = 0;  // of the centres' motion that the slices follow
+  double share_ = 0;    // of the centres' motion that the slices follow
 };
 
 }  // namespace stackmesh::interpolate

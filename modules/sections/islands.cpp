@@ -39,8 +39,7 @@ void link(const Islands& outer, const Islands& inner, const std::vector<std::int
   std::int32_t last_outer = 0, last_inner = 0;
   for (std::size_t p = 0; p < outer.of.size(); ++p) {
     const std::int32_t a = outer.of[p], b = inner.of[p];
-    if (a == 0 || b == 0 || (a == last_outer && b == last_inner) || outer.label[a] != inner.label[b])
-      continue;
+    if (a == 0 || b == 0 || (a == last_outer && b == last_inner) || outer.label[a] != inner.label[b]) continue;
     (groups[group_of[b]].*links).push_back(last_outer = a);
     last_inner = b;
   }
@@ -83,12 +82,9 @@ Islands find_islands(const Pixels& slice) {
       if (row[x] == 0) continue;
       const bool left = x > 0 && row[x - 1] == row[x], under = y > 0 && row[x - width] == row[x];
       if (left) ids[x] = ids[x - 1];
-      if (under && left && ids[x] != ids[x - width])
-        sets.join(ids[x], ids[x - width]);
-      else if (under && !left)
-        ids[x] = ids[x - width];
-      else if (!left)
-        ids[x] = sets.add();
+      if (under && left && ids[x] != ids[x - width]) sets.join(ids[x], ids[x - width]);
+      else if (under && !left) ids[x] = ids[x - width];
+      else if (!left) ids[x] = sets.add();
     }
   }
   std::vector<std::int32_t> number(sets.size(), 0);

@@ -84,8 +84,7 @@ class Mender {
       const std::int32_t *here = gap_.group[layer].data(), *there = gap_.group[from].data();
       const std::uint8_t* source = attached[from].data();
       std::uint8_t* target = attached[layer].data();
-      for (std::size_t p = 0; p < size; ++p)
-        target[p] |= static_cast<std::uint8_t>(here[p] == there[p]) & source[p];
+      for (std::size_t p = 0; p < size; ++p) target[p] |= static_cast<std::uint8_t>(here[p] == there[p]) & source[p];
     };
     for (int layer = 1; layer + 1 < count_; ++layer) inherit(layer, layer - 1);
     for (int layer = count_ - 2; layer > 0; --layer) inherit(layer, layer + 1);
@@ -113,9 +112,8 @@ class Mender {
         }
       });
     }
-    loose.erase(
-        std::remove_if(loose.begin(), loose.end(), [&](Voxel v) { return attached[v.layer][v.pixel] != 0; }),
-        loose.end());
+    loose.erase(std::remove_if(loose.begin(), loose.end(), [&](Voxel v) { return attached[v.layer][v.pixel] != 0; }),
+                loose.end());
     drop(loose);
   }
 
@@ -130,9 +128,7 @@ class Mender {
 
   /// Inside tissue, a voxel that was taken away goes to the neighbour with most faces that may have it.
   void refill() {
-    const auto inside = [&](Voxel v) {
-      return gap_.group.front()[v.pixel] != 0 && gap_.group.back()[v.pixel] != 0;
-    };
+    const auto inside = [&](Voxel v) { return gap_.group.front()[v.pixel] != 0 && gap_.group.back()[v.pixel] != 0; };
     for (Voxel v : dropped_) {
       if (!inside(v)) continue;
       std::array<std::int32_t, 6> near = {};

@@ -16,7 +16,8 @@ struct Piece {
   Label left, right;
 };
 
-/// Sides of a square: 0 bottom, 1 right, 2 top, 3 left; its corners: 0 bottom left, 1 bottom right, 2 top right, 3 top left.
+/// Sides of a square: 0 bottom, 1 right, 2 top, 3 left; its corners: 0 bottom left, 1 bottom right, 2 top right, 3 top
+/// left.
 class LayerTracer {
  public:
   explicit LayerTracer(const LabelLayer& layer) : layer_(layer) {}
@@ -102,8 +103,9 @@ class LayerTracer {
 
   /// Pieces to arcs: from junction to junction, then closed loops.
   void link() {
-    std::unordered_map<std::int64_t, std::array<std::int32_t, 2>> ends;  // the two pieces at a point that is no junction
-    std::vector<std::pair<std::int64_t, std::int32_t>> starts;           // junction, piece
+    // the two pieces at a point that is no junction
+    std::unordered_map<std::int64_t, std::array<std::int32_t, 2>> ends;
+    std::vector<std::pair<std::int64_t, std::int32_t>> starts;  // junction, piece
     for (std::size_t i = 0; i < pieces_.size(); ++i)
       for (std::int64_t key : {pieces_[i].a, pieces_[i].b}) {
         if (key % 3 == 2) {
@@ -159,14 +161,16 @@ Section layer_section(const LabelLayer& layer, double tolerance_px) {
   section.interpolated = true;
   std::unordered_map<std::uint64_t, std::int32_t> ids;
   const auto id_of = [&](GridPoint p) {
-    const std::uint64_t key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
+    const std::uint64_t key =
+        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
     const auto [it, fresh] = ids.emplace(key, static_cast<std::int32_t>(section.points.size()));
     if (fresh) section.points.push_back(p);
     return it->second;
   };
   for (std::size_t a = 0; a < arcs.size(); ++a)
     for (std::size_t i = 0; i + 1 < kept[a].size(); ++i)
-      section.edges.push_back({id_of(kept[a][i]), id_of(kept[a][i + 1]), tracer.arc_labels_[a].first, tracer.arc_labels_[a].second});
+      section.edges.push_back(
+          {id_of(kept[a][i]), id_of(kept[a][i + 1]), tracer.arc_labels_[a].first, tracer.arc_labels_[a].second});
   return section;
 }
 

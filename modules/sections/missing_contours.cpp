@@ -23,7 +23,8 @@ double twice_area(const std::vector<Point>& p) {
   return std::abs(sum);
 }
 
-/// The closed curves in which a closed surface meets a plane of constant z. A point at exactly that height counts as above.
+/// The closed curves in which a closed surface meets a plane of constant z. A point at exactly that height counts as
+/// above.
 std::vector<ContourPolygon> cut(const InterfaceComplex& surface, double z_mm) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> ids;  // an edge that is cut -> its point
   std::vector<Point> points;
@@ -31,7 +32,8 @@ std::vector<ContourPolygon> cut(const InterfaceComplex& surface, double z_mm) {
   const auto above = [&](std::int32_t v) { return surface.points[v].z >= z_mm; };
   const auto id_of = [&](std::int32_t u, std::int32_t v) {
     const auto key = std::minmax(u, v);
-    const auto [it, fresh] = ids.emplace(std::pair<std::int32_t, std::int32_t>(key), static_cast<std::int32_t>(points.size()));
+    const auto [it, fresh] =
+        ids.emplace(std::pair<std::int32_t, std::int32_t>(key), static_cast<std::int32_t>(points.size()));
     if (fresh) {
       const Vec3 a = surface.points[key.first], b = surface.points[key.second];
       const double t = (z_mm - a.z) / (b.z - a.z);

@@ -11,9 +11,9 @@
 namespace stackmesh::interpolate {
 namespace {
 
-constexpr float kFar = 8;                // pixels: distances are known up to that
-constexpr double kWallKept = 0.6;        // share of the thinnest drawn wall that is kept between slices
-constexpr double kLeastWall_px = 1.1;    // less would not show in the raster
+constexpr float kFar = 8;              // pixels: distances are known up to that
+constexpr double kWallKept = 0.6;      // share of the thinnest drawn wall that is kept between slices
+constexpr double kLeastWall_px = 1.1;  // less would not show in the raster
 constexpr double kMostWall_px = 4;
 constexpr double kOpens_rel = 0.5;       // of an enclosed part under the open: it is not enclosed any more there
 constexpr std::uint16_t kHole = 0xffff;  // stands for background that a label encloses
@@ -109,7 +109,8 @@ class Nesting {
       of[p] = of[root];
       ++regions[of[p]].pixels;
       const int x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
-      if (slice_.label[p] == 0 && (x == 0 || y == 0 || x + 1 == width || y + 1 == height)) regions[of[p]].outside = true;
+      if (slice_.label[p] == 0 && (x == 0 || y == 0 || x + 1 == width || y + 1 == height))
+        regions[of[p]].outside = true;
     }
   }
 
@@ -166,7 +167,8 @@ class Nesting {
 
 class NestedFiller {
  public:
-  NestedFiller(const Gap& gap, const NestedOptions& options) : gap_(gap), o_(options), low_(*gap.low), high_(*gap.high) {}
+  NestedFiller(const Gap& gap, const NestedOptions& options)
+      : gap_(gap), o_(options), low_(*gap.low), high_(*gap.high) {}
 
   NestedLayers run() {
     open_where_not_met(low_, high_);
@@ -204,7 +206,8 @@ class NestedFiller {
     return levels;
   }
 
-  /// A region that is enclosed here, but has no enclosed counterpart there and lies under the open or meets its label: it opens.
+  /// A region that is enclosed here, but has no enclosed counterpart there and lies under the open or meets its label:
+  /// it opens.
   static void open_where_not_met(Nesting& here, const Nesting& there) {
     for (std::size_t i = 0; i < here.regions.size(); ++i) {
       Region& r = here.regions[i];
@@ -224,7 +227,8 @@ class NestedFiller {
           open += s.outside;
           meets = meets || (r.label != 0 && s.label == r.label);
         }
-      if (meets || (host_goes_on && static_cast<double>(open) > kOpens_rel * static_cast<double>(r.pixels))) r.round = here.regions[r.round].round;
+      if (meets || (host_goes_on && static_cast<double>(open) > kOpens_rel * static_cast<double>(r.pixels)))
+        r.round = here.regions[r.round].round;
     }
   }
 
@@ -241,11 +245,13 @@ class NestedFiller {
     return inside == out.size() ? out : std::vector<std::uint16_t>();
   }
 
-  /// A part that meets its label in the other slice must meet it at its own level of nesting, too; unless the two slices are the same
-  /// single nest, one of which has grown or moved by more than its walls: then the levels tell what goes on in what.
+  /// A part that meets its label in the other slice must meet it at its own level of nesting, too; unless the two
+  /// slices are the same single nest, one of which has grown or moved by more than its walls: then the levels tell what
+  /// goes on in what.
   bool agree() const {
     if (const std::vector<std::uint16_t> nest = chain(low_); !nest.empty() && nest == chain(high_)) return true;
-    std::vector<std::uint8_t> low(low_.regions.size(), 0), high(high_.regions.size(), 0);  // 1: at another level, 2: at its own
+    // 1: at another level, 2: at its own
+    std::vector<std::uint8_t> low(low_.regions.size(), 0), high(high_.regions.size(), 0);
     for (std::size_t p = 0; p < low_.of.size(); ++p) {
       const Region &a = low_.regions[low_.of[p]], &b = high_.regions[high_.of[p]];
       if (a.label == 0 || a.label != b.label) continue;
@@ -305,15 +311,19 @@ class NestedFiller {
     double least = most * most;
     const std::vector<BorderPiece> a = outline(outer);
     std::vector<BorderPiece> b = outline(inner);
-    const auto by_x = [](const BorderPiece& u, const BorderPiece& v) { return std::min(u.ax, u.bx) < std::min(v.ax, v.bx); };
+    const auto by_x = [](const BorderPiece& u, const BorderPiece& v) {
+      return std::min(u.ax, u.bx) < std::min(v.ax, v.bx);
+    };
     std::sort(b.begin(), b.end(), by_x);
     double widest = 0;
     for (const BorderPiece& s : b) widest = std::max(widest, std::abs(s.ax - s.bx));
     for (const BorderPiece& s : a) {
       const double x0 = std::min(s.ax, s.bx), x1 = std::max(s.ax, s.bx);
-      auto it = std::lower_bound(b.begin(), b.end(), x0 - most - widest, [](const BorderPiece& u, double x) { return std::min(u.ax, u.bx) < x; });
+      auto it = std::lower_bound(b.begin(), b.end(), x0 - most - widest,
+                                 [](const BorderPiece& u, double x) { return std::min(u.ax, u.bx) < x; });
       for (; it != b.end() && std::min(it->ax, it->bx) < x1 + most; ++it)
-        least = std::min({least, squared(s.ax, s.ay, *it), squared(s.bx, s.by, *it), squared(it->ax, it->ay, s), squared(it->bx, it->by, s)});
+        least = std::min({least, squared(s.ax, s.ay, *it), squared(s.bx, s.by, *it), squared(it->ax, it->ay, s),
+                          squared(it->bx, it->by, s)});
     }
     return std::sqrt(least);
   }
@@ -340,12 +350,14 @@ class NestedFiller {
     std::vector<LayerDepth> depth;
     const GapLayers layers = fill_gap(level, o_.per_gap, o_.tension, o_.pixel_mm, &depth);
     const std::int32_t first = static_cast<std::int32_t>(out_.label.size()) - 1;  // parts are numbered on
-    for (std::size_t g = 1; g < layers.label.size(); ++g) out_.label.push_back(layers.label[g] == kHole ? 0 : layers.label[g]);
+    for (std::size_t g = 1; g < layers.label.size(); ++g)
+      out_.label.push_back(layers.label[g] == kHole ? 0 : layers.label[g]);
     const double wall_low = d > 0 ? wall(outer_[0], seen[1]) : 0, wall_high = d > 0 ? wall(outer_[1], seen[2]) : 0;
     for (int j = 0; j < o_.per_gap; ++j) {
       NestedLayers::Layer& out = out_.layer[j];
       const double t = static_cast<double>(j + 1) / (o_.per_gap + 1);
-      const float keep = static_cast<float>(std::clamp(kWallKept * ((1 - t) * wall_low + t * wall_high), kLeastWall_px, kMostWall_px));
+      const float keep =
+          static_cast<float>(std::clamp(kWallKept * ((1 - t) * wall_low + t * wall_high), kLeastWall_px, kMostWall_px));
       std::vector<float> inside(out.part.size());
       for (std::size_t p = 0; p < inside.size(); ++p) {
         const std::int32_t group = layers.group[j + 1][p];
@@ -384,7 +396,8 @@ class NestedFiller {
       for (std::size_t p = width + 1; p + width + 1 < size; ++p) {
         if (below[p] == above[p] && below[p] == above[p - 1] && below[p] == above[p + width]) continue;
         bool skips = false;
-        for (std::size_t q : {p, p - 1, p + 1, p - width, p + width}) skips = skips || std::abs(below[p] - above[q]) > 1;
+        for (std::size_t q : {p, p - 1, p + 1, p - width, p + width})
+          skips = skips || std::abs(below[p] - above[q]) > 1;
         count += skips;
       }
       below = above;
@@ -403,6 +416,8 @@ class NestedFiller {
 
 }  // namespace
 
-NestedLayers fill_nested_gap(const Gap& gap, const NestedOptions& options) { return NestedFiller(gap, options).run(); }
+NestedLayers fill_nested_gap(const Gap& gap, const NestedOptions& options) {
+  return NestedFiller(gap, options).run();
+}
 
 }  // namespace stackmesh::interpolate

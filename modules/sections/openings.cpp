@@ -38,12 +38,13 @@ std::string list_openings(const std::vector<OpenEdge>& edges, double z_mm, doubl
   std::vector<Opening> list;
   for (const auto& [root, o] : by_root)
     if (o.length_mm > 0) list.push_back(o);
-  std::stable_sort(list.begin(), list.end(), [](const Opening& a, const Opening& b) { return a.length_mm > b.length_mm; });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Opening& a, const Opening& b) { return a.length_mm > b.length_mm; });
   std::string text;
   for (std::size_t i = 0; i < list.size() && i < kMostOpenings; ++i) {
     char one[120];
-    std::snprintf(one, sizeof one, "%s %.3g mm2 at (%.1f, %.1f, %.6g)", i > 0 ? "," : "", list[i].length_mm * thickness_mm, list[i].x / list[i].length_mm,
-                  list[i].y / list[i].length_mm, z_mm);
+    std::snprintf(one, sizeof one, "%s %.3g mm2 at (%.1f, %.1f, %.6g)", i > 0 ? "," : "",
+                  list[i].length_mm * thickness_mm, list[i].x / list[i].length_mm, list[i].y / list[i].length_mm, z_mm);
     text += one;
   }
   if (list.size() > kMostOpenings) text += ", and " + std::to_string(list.size() - kMostOpenings) + " smaller ones";

@@ -9,7 +9,8 @@ inline bool is_inside(const std::array<double, 2>& p, const std::vector<std::arr
   bool inside = false;
   for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
     if ((polygon[i][1] > p[1]) != (polygon[j][1] > p[1]) &&
-        p[0] < (polygon[j][0] - polygon[i][0]) * (p[1] - polygon[i][1]) / (polygon[j][1] - polygon[i][1]) + polygon[i][0])
+        p[0] <
+            (polygon[j][0] - polygon[i][0]) * (p[1] - polygon[i][1]) / (polygon[j][1] - polygon[i][1]) + polygon[i][0])
       inside = !inside;
   return inside;
 }

@@ -11,14 +11,14 @@
 
 #include "base/error.h"
 #include "base/warning.h"
+#include "planar/planar.h"
+#include "planar/snap_rounding.h"
 #include "sections/contour_copies.h"
 #include "sections/contour_crossings.h"
 #include "sections/drawn_detail.h"
 #include "sections/drawn_ends.h"
 #include "sections/missing_contours.h"
 #include "sections/openings.h"
-#include "planar/planar.h"
-#include "planar/snap_rounding.h"
 
 namespace stackmesh {
 namespace {
@@ -58,12 +58,14 @@ struct SourceSegment {
 
 class SectionMaker {
  public:
-  SectionMaker(const std::vector<LabelContours>& files, std::vector<Warning>& warnings, const ContourStackOptions& options)
+  SectionMaker(const std::vector<LabelContours>& files, std::vector<Warning>& warnings,
+               const ContourStackOptions& options)
       : files_(files), warnings_(warnings), options_(options) {}
 
   Stack run() {
     if (files_.size() > kMaxLabels)
-      fail_input("more than " + std::to_string(kMaxLabels) + " labels drawn as contours", files_[kMaxLabels].path, "mesh fewer labels at once");
+      fail_input("more than " + std::to_string(kMaxLabels) + " labels drawn as contours", files_[kMaxLabels].path,
+                 "mesh fewer labels at once");
     for (LabelContours& f : files_) join_sections(f, options_.same_height_mm);
     align_heights(files_, options_.same_height_mm);
     drop_copies();
@@ -89,12 +91,14 @@ class SectionMaker {
         fail_input("two contour files for label " + std::to_string(f.label), f.path, "give each label one file");
       stack.labels.push_back({f.label, f.name, f.colour});
     }
-    std::sort(stack.labels.begin(), stack.labels.end(), [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
+    std::sort(stack.labels.begin(), stack.labels.end(),
+              [](const LabelInfo& a, const LabelInfo& b) { return a.number < b.number; });
     for (MaskedSection& m : masked) stack.sections.push_back(give_labels(std::move(m)));
     stack.pixel_mm = drawn_pixel_mm(stack, median_edge_);
     for (const auto& [f, heights] : repaired_)
-      warnings_.push_back(warning_at(WarningCode::contours_mended, files_[f].path, name_of(f) + " has contours that cross themselves or each other at z = " + list_heights(heights) +
-                          " mm; what they go round is united"));
+      warnings_.push_back(warning_at(WarningCode::contours_mended, files_[f].path,
+                                     name_of(f) + " has contours that cross themselves or each other at z = " +
+                                         list_heights(heights) + " mm; what they go round is united"));
     if (options_.report_overlaps) warn_overlaps();
     if (options_.merge) merge_labels(stack);
     return stack;
@@ -112,8 +116,11 @@ class SectionMaker {
           where.push_back(s.z_mm);
         }
       if (copies > 0)
-        warnings_.push_back(warning_at(WarningCode::repeated, f.path, (f.name.empty() ? "label " + std::to_string(f.label) : "'" + f.name + "'") + " repeats " +
-                            std::to_string(copies) + " of its contours, or nearly so, at z = " + list_heights(where) + " mm; each counts once"));
+        warnings_.push_back(warning_at(WarningCode::repeated, f.path,
+                                       (f.name.empty() ? "label " + std::to_string(f.label) : "'" + f.name + "'") +
+                                           " repeats " + std::to_string(copies) +
+                                           " of its contours, or nearly so, at z = " + list_heights(where) +
+                                           " mm; each counts once"));
     }
   }
 
@@ -155,9 +162,11 @@ class SectionMaker {
         }
       filled += any ? 1 : 0;
     }
-    if (levels_.empty()) fail_input("the file holds no contour", files_.empty() ? "" : files_[0].path, "check the file");
+    if (levels_.empty())
+      fail_input("the file holds no contour", files_.empty() ? "" : files_[0].path, "check the file");
     if (filled < 2)
-      fail_input("only " + std::to_string(filled) + " section with contours", files_[0].path, "give at least two sections");
+      fail_input("only " + std::to_string(filled) + " section with contours", files_[0].path,
+                 "give at least two sections");
     if (!options_.fill_missing) warn_missing();
   }
 
@@ -200,11 +209,12 @@ class SectionMaker {
       std::size_t missing = 0;
       double first = 0;
       for (const Level& level : levels_)
-        if (level.z_mm > low && level.z_mm < high && level.of_file[f] == nullptr && missing++ == 0)
-          first = level.z_mm;
+        if (level.z_mm > low && level.z_mm < high && level.of_file[f] == nullptr && missing++ == 0) first = level.z_mm;
       if (missing > 0)
-        warnings_.push_back({WarningCode::missing_contours, files_[f].path, files_[f].path + " has no contour at " + std::to_string(missing) +
-                            " height(s) that other labels have (first: z = " + std::to_string(first) + " mm); it is empty there"});
+        warnings_.push_back({WarningCode::missing_contours, files_[f].path,
+                             files_[f].path + " has no contour at " + std::to_string(missing) +
+                                 " height(s) that other labels have (first: z = " + std::to_string(first) +
+                                 " mm); it is empty there"});
     }
   }
 
@@ -225,8 +235,9 @@ class SectionMaker {
       }
       files_[f].sections = std::move(all);
       if (!made.empty())
-        warnings_.push_back(warning_at(WarningCode::missing_contours, files_[f].path, name_of(f) + " has no contour at z = " + list_heights(made) +
-                            " mm, where other labels have some; its contours there are interpolated"));
+        warnings_.push_back(warning_at(WarningCode::missing_contours, files_[f].path,
+                                       name_of(f) + " has no contour at z = " + list_heights(made) +
+                                           " mm, where other labels have some; its contours there are interpolated"));
       warn_gaps(f);
     }
   }
@@ -245,25 +256,33 @@ class SectionMaker {
     std::vector<double> lost;
     for (std::size_t i = 0; i < gaps.size(); ++i) {
       const double missing = std::round(gaps[i] / usual) - 1;
-      for (int k = 1; gaps[i] > 1.5 * usual && k <= missing && k <= 1000; ++k) lost.push_back(s[i].z_mm + k * gaps[i] / (missing + 1));
+      for (int k = 1; gaps[i] > 1.5 * usual && k <= missing && k <= 1000; ++k)
+        lost.push_back(s[i].z_mm + k * gaps[i] / (missing + 1));
     }
     if (!lost.empty())
-      warnings_.push_back(warning_at(WarningCode::missing_contours, files_[f].path, name_of(f) + " has no contour at about z = " + list_heights(lost) +
-                          " mm, where its usual gap of " + text_of(usual, "%.3g") + " mm asks for some; it is interpolated there"));
+      warnings_.push_back(warning_at(WarningCode::missing_contours, files_[f].path,
+                                     name_of(f) + " has no contour at about z = " + list_heights(lost) +
+                                         " mm, where its usual gap of " + text_of(usual, "%.3g") +
+                                         " mm asks for some; it is interpolated there"));
   }
 
   /// The labels that are merged become the smallest of them; what lay between two of them goes.
   void merge_labels(Stack& stack) const {
     const auto merges = [&](Label l) { return l != 0 && options_.not_merged.count(l) == 0; };
-    const auto first = std::find_if(stack.labels.begin(), stack.labels.end(), [&](const LabelInfo& l) { return merges(l.number); });
+    const auto first =
+        std::find_if(stack.labels.begin(), stack.labels.end(), [&](const LabelInfo& l) { return merges(l.number); });
     if (first == stack.labels.end()) return;
     const Label kept = first->number;
-    stack.labels.erase(std::remove_if(stack.labels.begin(), stack.labels.end(), [&](const LabelInfo& l) { return merges(l.number) && l.number != kept; }), stack.labels.end());
+    stack.labels.erase(std::remove_if(stack.labels.begin(), stack.labels.end(),
+                                      [&](const LabelInfo& l) { return merges(l.number) && l.number != kept; }),
+                       stack.labels.end());
     for (Section& s : stack.sections) {
       for (SectionEdge& e : s.edges)
         for (Label* side : {&e.left, &e.right})
           if (merges(*side)) *side = kept;
-      s.edges.erase(std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }), s.edges.end());
+      s.edges.erase(
+          std::remove_if(s.edges.begin(), s.edges.end(), [](const SectionEdge& e) { return e.left == e.right; }),
+          s.edges.end());
     }
   }
 
@@ -312,10 +331,11 @@ class SectionMaker {
     }
   }
 
-  /// A label that lies inside another one in most sections, but reaches its outline in some: the other one is open there.
+  /// A label that lies inside another one in most sections, but reaches its outline in some: the other one is open
+  /// there.
   void warn_open_walls(const std::vector<MaskedSection>& masked) {
     struct Pair {
-      std::size_t inside = 0;                // sections
+      std::size_t inside = 0;  // sections
       std::vector<double> open_z_mm;
       double area_mm2 = 0;
       std::string openings;  // one by one
@@ -335,7 +355,10 @@ class SectionMaker {
             const GridPoint a = m.section.points[e.a], b = m.section.points[e.b];
             const double length = std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y) * grid_;
             all += length;
-            if (!(e.left[f] ? e.right[g] : e.left[g])) bare += length, open.push_back({e.a, e.b, {x0_ + grid_ * a.x, y0_ + grid_ * a.y}, {x0_ + grid_ * b.x, y0_ + grid_ * b.y}});
+            if (!(e.left[f] ? e.right[g] : e.left[g]))
+              bare += length,
+                  open.push_back(
+                      {e.a, e.b, {x0_ + grid_ * a.x, y0_ + grid_ * a.y}, {x0_ + grid_ * b.x, y0_ + grid_ * b.y}});
           }
           if (all == 0 || bare > kMostlyOpen_rel * all) continue;
           Pair& p = pairs[{f, g}];
@@ -350,8 +373,11 @@ class SectionMaker {
     }
     for (const auto& [pair, p] : pairs)
       if (!p.open_z_mm.empty() && p.inside >= p.open_z_mm.size())
-        warnings_.push_back(warning_at(WarningCode::open_wall, files_[pair.first].path, name_of(pair.first) + " lies inside " + name_of(pair.second) + ", but reaches its outline at z = " +
-                            list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " + text_of(p.area_mm2, "%.3g") + " mm2:" + p.openings.substr(0, p.openings.size() - 1)));
+        warnings_.push_back(warning_at(
+            WarningCode::open_wall, files_[pair.first].path,
+            name_of(pair.first) + " lies inside " + name_of(pair.second) + ", but reaches its outline at z = " +
+                list_heights(p.open_z_mm) + " mm: the wall between them is open there, over about " +
+                text_of(p.area_mm2, "%.3g") + " mm2:" + p.openings.substr(0, p.openings.size() - 1)));
   }
 
   /// Who lies inside whom, and who shares how much with whom.
@@ -364,27 +390,32 @@ class SectionMaker {
       if (!(volume > 1e-4 * std::min(volume_[first], volume_[loser]))) continue;  // rounding, a line shared
       const std::string how_much = text_of(volume, "%.4g") + " mm3";
       if (volume >= kInside_rel * volume_[loser])
-        warnings_.push_back(warning_at(WarningCode::overlap, files_[loser].path, name_of(loser) + " lies wholly under " + name_of(first) +
-                            ", which has priority: nothing of its " + how_much + " is left"));
+        warnings_.push_back(warning_at(WarningCode::overlap, files_[loser].path,
+                                       name_of(loser) + " lies wholly under " + name_of(first) +
+                                           ", which has priority: nothing of its " + how_much + " is left"));
       else if (volume >= kInside_rel * volume_[first])
         inside[loser] += (inside[loser].empty() ? "" : ", ") + name_of(first) + " (" + how_much + ")";
       else
-        warnings_.push_back(warning_at(WarningCode::overlap, files_[loser].path, name_of(first) + " and " + name_of(loser) + " overlap in " + how_much + " (" +
-                            text_of(100 * volume / volume_[first], "%.2g") + " and " + text_of(100 * volume / volume_[loser], "%.2g") +
-                            " % of them), which went to " + name_of(first)));
+        warnings_.push_back(warning_at(WarningCode::overlap, files_[loser].path,
+                                       name_of(first) + " and " + name_of(loser) + " overlap in " + how_much + " (" +
+                                           text_of(100 * volume / volume_[first], "%.2g") + " and " +
+                                           text_of(100 * volume / volume_[loser], "%.2g") +
+                                           " % of them), which went to " + name_of(first)));
     }
     for (const auto& [outer, names] : inside)
-      warnings_.push_back(warning_at(WarningCode::taken_out, files_[outer].path, "inside " + name_of(outer) + ", and taken out of it: " + names));
+      warnings_.push_back(warning_at(WarningCode::taken_out, files_[outer].path,
+                                     "inside " + name_of(outer) + ", and taken out of it: " + names));
   }
 
   GridPoint to_grid(const std::array<double, 2>& p) const {
-    return {static_cast<std::int32_t>(std::lround((p[0] - x0_) / grid_)), static_cast<std::int32_t>(std::lround((p[1] - y0_) / grid_))};
+    return {static_cast<std::int32_t>(std::lround((p[0] - x0_) / grid_)),
+            static_cast<std::int32_t>(std::lround((p[1] - y0_) / grid_))};
   }
 
   std::string where(const Level& level, const SourceSegment& s) const {
     const std::string name = files_[s.file].name.empty() ? "" : ", '" + files_[s.file].name + "'";
-    return files_[s.file].path + name + ", section " + std::to_string(level.index_in_file[s.file] + 1) + " at z = " +
-           std::to_string(level.z_mm) + " mm, contour " + std::to_string(s.polygon + 1);
+    return files_[s.file].path + name + ", section " + std::to_string(level.index_in_file[s.file] + 1) +
+           " at z = " + std::to_string(level.z_mm) + " mm, contour " + std::to_string(s.polygon + 1);
   }
 
   struct Crossing {
@@ -399,20 +430,26 @@ class SectionMaker {
     const EdgeGrid grid(segments);
     for (std::size_t i = 0; i < segments.size(); ++i)
       grid.near_segment(segments[i], [&](std::int32_t k) {
-        if (static_cast<std::size_t>(k) >= i || sources[k].file != sources[i].file || !properly_cross(segments[i], segments[k])) return;
+        if (static_cast<std::size_t>(k) >= i || sources[k].file != sources[i].file ||
+            !properly_cross(segments[i], segments[k]))
+          return;
         const auto [a, b] = ends(level, sources[i]);
         const auto [c, d] = ends(level, sources[k]);
-        if (CGAL::orientation(a, b, c) * CGAL::orientation(a, b, d) >= 0 || CGAL::orientation(c, d, a) * CGAL::orientation(c, d, b) >= 0)
+        if (CGAL::orientation(a, b, c) * CGAL::orientation(a, b, d) >= 0 ||
+            CGAL::orientation(c, d, a) * CGAL::orientation(c, d, b) >= 0)
           return;  // only rounding makes them cross; snap rounding sees to that
-        found.push_back({sources[i], sources[k],
-                         " near (" + std::to_string(CGAL::to_double(a.x())) + ", " + std::to_string(CGAL::to_double(a.y())) + ")"});
+        found.push_back(
+            {sources[i], sources[k],
+             " near (" + std::to_string(CGAL::to_double(a.x())) + ", " + std::to_string(CGAL::to_double(a.y())) + ")"});
       });
     return found;
   }
 
   [[noreturn]] void refuse_crossing(const Level& level, const Crossing& c) const {
-    if (c.first.polygon == c.second.polygon) fail_input("contour crosses itself" + c.near, where(level, c.first), "mend the contour");
-    fail_input("contour " + std::to_string(c.second.polygon + 1) + " overlaps contour " + std::to_string(c.first.polygon + 1) + c.near,
+    if (c.first.polygon == c.second.polygon)
+      fail_input("contour crosses itself" + c.near, where(level, c.first), "mend the contour");
+    fail_input("contour " + std::to_string(c.second.polygon + 1) + " overlaps contour " +
+                   std::to_string(c.first.polygon + 1) + c.near,
                where(level, c.first), "contours of one label must not cross");
   }
 
@@ -431,7 +468,9 @@ class SectionMaker {
       };
       std::map<std::size_t, Crossing> crossing_of;
       for (const Crossing& c : crossings)
-        if (c.first.file == f) group[std::max(root(c.first.polygon), root(c.second.polygon))] = std::min(root(c.first.polygon), root(c.second.polygon));
+        if (c.first.file == f)
+          group[std::max(root(c.first.polygon), root(c.second.polygon))] =
+              std::min(root(c.first.polygon), root(c.second.polygon));
       for (const Crossing& c : crossings)
         if (c.first.file == f) crossing_of.emplace(root(c.first.polygon), c);
       for (const auto& [first, crossing] : crossing_of) {
@@ -488,7 +527,8 @@ class SectionMaker {
     std::vector<MaskedEdge> edges;
     for (const NodedEdge& e : noded.edges)
       edges.push_back({std::min(e.a, e.b), std::max(e.a, e.b), Mask(1) << sources[e.source].file});
-    std::sort(edges.begin(), edges.end(), [](const MaskedEdge& u, const MaskedEdge& v) { return u.a != v.a ? u.a < v.a : u.b < v.b; });
+    std::sort(edges.begin(), edges.end(),
+              [](const MaskedEdge& u, const MaskedEdge& v) { return u.a != v.a ? u.a < v.a : u.b < v.b; });
     std::size_t kept = 0;
     for (std::size_t i = 0, j; i < edges.size(); i = j) {
       MaskedEdge sum = edges[i];
@@ -507,7 +547,8 @@ class SectionMaker {
       const auto& polygons = level.of_file[f]->polygons;
       for (std::size_t p = 0; p < polygons.size(); ++p)
         for (std::size_t i = 0; i < polygons[p].points.size(); ++i) {
-          const GridPoint a = to_grid(polygons[p].points[i]), b = to_grid(polygons[p].points[(i + 1) % polygons[p].points.size()]);
+          const GridPoint a = to_grid(polygons[p].points[i]),
+                          b = to_grid(polygons[p].points[(i + 1) % polygons[p].points.size()]);
           if (a == b) continue;
           segments.push_back({a, b});
           sources.push_back({f, p, i});
@@ -550,13 +591,15 @@ class SectionMaker {
   static std::pair<FaceHandle, FaceHandle> sides(const Cdt& cdt, VertexHandle a, VertexHandle b) {
     FaceHandle face;
     int i = 0;
-    if (!cdt.is_edge(a, b, face, i)) fail_internal("a contour edge is missing in the triangulation", "orienting contours");
+    if (!cdt.is_edge(a, b, face, i))
+      fail_internal("a contour edge is missing in the triangulation", "orienting contours");
     const FaceHandle other = face->neighbor(i);
     return face->vertex(Cdt::ccw(i)) == a ? std::make_pair(face, other) : std::make_pair(other, face);
   }
 
   /// Regions grown without crossing a contour (paper 3.1.2), then which labels cover each, from the outside in.
-  static std::vector<Mask> grow_regions(Cdt& cdt, const std::vector<VertexHandle>& handles, const std::vector<MaskedEdge>& edges) {
+  static std::vector<Mask> grow_regions(Cdt& cdt, const std::vector<VertexHandle>& handles,
+                                        const std::vector<MaskedEdge>& edges) {
     std::int32_t regions = 0;
     const auto grow = [&](FaceHandle start) {
       std::vector<FaceHandle> stack = {start};
@@ -601,8 +644,8 @@ class SectionMaker {
   std::vector<LabelContours> files_;
   std::vector<Warning>& warnings_;
   const ContourStackOptions options_;
-  std::map<std::size_t, std::vector<double>> repaired_;             // heights where contours crossed
-  std::map<std::size_t, double> volume_;                            // mm3 of each label's contours
+  std::map<std::size_t, std::vector<double>> repaired_;            // heights where contours crossed
+  std::map<std::size_t, double> volume_;                           // mm3 of each label's contours
   std::map<std::pair<std::size_t, std::size_t>, double> overlap_;  // (a, b), a < b -> mm3
   std::vector<Level> levels_;
   std::vector<std::size_t> by_rank_;

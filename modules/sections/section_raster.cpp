@@ -33,7 +33,8 @@ Pixels rasterise(const Section& section, const Raster& raster, const std::map<La
     for (int y = first; y <= last; ++y) {
       const long double at = raster.y0 + static_cast<double>(y) * raster.unit[1];
       if (!(at > low && at < high)) continue;
-      const long double x = a.x + (at - a.y) * (static_cast<long double>(b.x) - a.x) / (static_cast<long double>(b.y) - a.y);
+      const long double x =
+          a.x + (at - a.y) * (static_cast<long double>(b.x) - a.x) / (static_cast<long double>(b.y) - a.y);
       rows[y].push_back({x, b.y > a.y ? right : left});
     }
   }

@@ -3,14 +3,15 @@
 #include <cstdint>
 #include <map>
 
-#include "sections/islands.h"
 #include "model/stack.h"
+#include "sections/islands.h"
 
 namespace stackmesh::interpolate {
 
 /// A raster over the plane of a stack, in grid units.
 struct Raster {
-  double x0 = 0, y0 = 0;                      ///< centre of pixel (0, 0); half-integers, so that no contour point lies on a row
+  /// centre of pixel (0, 0); half-integers, so that no contour point lies on a row
+  double x0 = 0, y0 = 0;
   std::array<std::int32_t, 2> unit = {1, 1};  ///< pixel along x and y
   int width = 0, height = 0;
 };

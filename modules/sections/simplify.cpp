@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "sections/arcs.h"
 #include "model/edge_grid.h"
+#include "sections/arcs.h"
 
 namespace stackmesh {
 namespace {
@@ -66,8 +66,7 @@ class ArcSimplifier {
 
   /// Appends the chords for chain[from..to]: approxPolyDP, then halved locally where a chord relabels a pixel
   /// centre.
-  void add(std::int32_t arc, std::int32_t from, std::int32_t to, double tolerance,
-           std::vector<Chord>& out) const {
+  void add(std::int32_t arc, std::int32_t from, std::int32_t to, double tolerance, std::vector<Chord>& out) const {
     const std::vector<CrackVertex>& chain = arcs_[arc].chain;
     if (to - from == 1) {
       out.push_back({arc, from, to, tolerance});
@@ -88,18 +87,16 @@ class ArcSimplifier {
       std::int32_t j = i + 1;
       while (j < to && curve[j - from] != kept[k]) ++j;
       if (k + 1 == kept.size()) j = to;
-      if (!centres_ || keeps_centres(chain, i, j))
-        add_pieces({arc, i, j, tolerance}, out);
-      else
-        add(arc, i, j, tolerance / 2, out);
+      if (!centres_ || keeps_centres(chain, i, j)) add_pieces({arc, i, j, tolerance}, out);
+      else add(arc, i, j, tolerance / 2, out);
       i = j;
       if (i == to) break;
     }
     if (i != to) add(arc, i, to, tolerance / 2, out);
   }
 
-  /// A chord, halved at its chain's vertices until no piece is too long: between far vertices a strip of the stitched surface
-  /// would hang on its ends alone.
+  /// A chord, halved at its chain's vertices until no piece is too long: between far vertices a strip of the stitched
+  /// surface would hang on its ends alone.
   void add_pieces(const Chord& c, std::vector<Chord>& out) const {
     const std::vector<CrackVertex>& chain = arcs_[c.arc].chain;
     const GridPoint p = chain[c.from].position, q = chain[c.to].position;
@@ -117,7 +114,8 @@ class ArcSimplifier {
         middle = i;
       }
     }
-    for (const Chord& half : {Chord{c.arc, c.from, middle, c.tolerance_px}, Chord{c.arc, middle, c.to, c.tolerance_px}}) {
+    for (const Chord& half :
+         {Chord{c.arc, c.from, middle, c.tolerance_px}, Chord{c.arc, middle, c.to, c.tolerance_px}}) {
       if (!centres_ || keeps_centres(chain, half.from, half.to)) add_pieces(half, out);
       else add(c.arc, half.from, half.to, c.tolerance_px / 2, out);
     }
@@ -138,8 +136,7 @@ class ArcSimplifier {
       const std::int64_t row =
           static_cast<std::int64_t>(std::min(chain[i].y, chain[i + 1].y)) * kGridPerPixel + kGridPerPixel / 2;
       if ((row - p.y) * (dy > 0 ? 1 : -1) <= 0 || (q.y - row) * (dy > 0 ? 1 : -1) <= 0) return false;
-      const std::int64_t off =
-          (row - p.y) * dx - (static_cast<std::int64_t>(chain[i].x) * kGridPerPixel - p.x) * dy;
+      const std::int64_t off = (row - p.y) * dx - (static_cast<std::int64_t>(chain[i].x) * kGridPerPixel - p.x) * dy;
       if (std::abs(off) >= kGridPerPixel / 2 * std::abs(dy)) return false;
     }
     return true;
@@ -159,8 +156,7 @@ class ArcSimplifier {
     bool any = false;
     for (std::size_t i = 0; i < chords_.size(); ++i)
       grid.near_segment(segments[i], [&](std::int32_t k) {
-        if (static_cast<std::size_t>(k) >= i || (bad[i] && bad[k]) || !clash(segments[i], segments[k]))
-          return;
+        if (static_cast<std::size_t>(k) >= i || (bad[i] && bad[k]) || !clash(segments[i], segments[k])) return;
         for (std::size_t c : {i, static_cast<std::size_t>(k)})
           if (chords_[c].to - chords_[c].from > 1) bad[c] = any = true;
       });
@@ -169,10 +165,8 @@ class ArcSimplifier {
     next.reserve(chords_.size() + 16);
     for (std::size_t i = 0; i < chords_.size(); ++i) {
       const Chord& c = chords_[i];
-      if (bad[i])
-        add(c.arc, c.from, c.to, c.tolerance_px / 2, next);
-      else
-        next.push_back(c);
+      if (bad[i]) add(c.arc, c.from, c.to, c.tolerance_px / 2, next);
+      else next.push_back(c);
     }
     chords_.swap(next);
     return true;
@@ -194,12 +188,14 @@ std::vector<std::vector<GridPoint>> all_vertices(const std::vector<Arc>& arcs) {
 
 }  // namespace
 
-std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px, double longest_px) {
+std::vector<std::vector<GridPoint>> simplify_arcs(const std::vector<Arc>& arcs, double tolerance_px,
+                                                  double longest_px) {
   if (tolerance_px > 0) return ArcSimplifier(arcs, tolerance_px, true, longest_px).run();
   return all_vertices(arcs);
 }
 
-std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance, double longest_px) {
+std::vector<std::vector<GridPoint>> simplify_free_arcs(const std::vector<Arc>& arcs, double tolerance,
+                                                       double longest_px) {
   if (tolerance > 0) return ArcSimplifier(arcs, tolerance / kGridPerPixel, false, longest_px).run();
   return all_vertices(arcs);
 }

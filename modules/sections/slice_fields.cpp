@@ -21,8 +21,7 @@ class LowerEnvelope {
       double s = -std::numeric_limits<double>::infinity();
       while (top >= 0) {
         const int p = parabola_[top];
-        s = ((f[q] - f[p]) / step2_ + static_cast<double>(q) * q - static_cast<double>(p) * p) /
-            (2.0 * (q - p));
+        s = ((f[q] - f[p]) / step2_ + static_cast<double>(q) * q - static_cast<double>(p) * p) / (2.0 * (q - p));
         if (s > from_[top]) break;
         --top;
       }
@@ -46,8 +45,7 @@ class LowerEnvelope {
 };
 
 /// Distance from each pixel with in == wanted to the nearest other one, less half a pixel; 0 for the others.
-void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel_mm,
-               std::vector<float>& out) {
+void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel_mm, std::vector<float>& out) {
   const int width = mask.box.width(), height = mask.box.height();
   const double sx = pixel_mm[0], sy = pixel_mm[1];
   constexpr int kNone = std::numeric_limits<int>::max() / 4;
@@ -85,7 +83,11 @@ void distances(const Mask& mask, bool wanted, const std::array<double, 2>& pixel
 class NearestPiece {
  public:
   NearestPiece(const Box& box, const std::vector<BorderPiece>& pieces, const std::array<double, 2>& pixel_mm)
-      : box_(box), pieces_(pieces), mm_(pixel_mm), piece_(box.area(), -1), squared_(box.area(), std::numeric_limits<float>::infinity()) {
+      : box_(box),
+        pieces_(pieces),
+        mm_(pixel_mm),
+        piece_(box.area(), -1),
+        squared_(box.area(), std::numeric_limits<float>::infinity()) {
     for (std::size_t i = 0; i < pieces_.size(); ++i) seed(static_cast<std::int32_t>(i));
     for (int pass = 0; pass < 2; ++pass) {
       for (int y = box_.y0; y < box_.y1; ++y) sweep_row(y, -1);
@@ -102,7 +104,8 @@ class NearestPiece {
     const std::size_t p = index(x, y);
     if (piece < 0 || piece == piece_[p]) return;
     const BorderPiece& b = pieces_[piece];
-    const double dx = (b.bx - b.ax) * mm_[0], dy = (b.by - b.ay) * mm_[1], px = (x - b.ax) * mm_[0], py = (y - b.ay) * mm_[1];
+    const double dx = (b.bx - b.ax) * mm_[0], dy = (b.by - b.ay) * mm_[1], px = (x - b.ax) * mm_[0],
+                 py = (y - b.ay) * mm_[1];
     const double length = dx * dx + dy * dy, t = length > 0 ? std::clamp((px * dx + py * dy) / length, 0.0, 1.0) : 0.0;
     const float d = static_cast<float>((px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy));
     if (d >= squared_[p]) return;
@@ -116,7 +119,8 @@ class NearestPiece {
     const int steps = 1 + static_cast<int>(2 * std::max(std::abs(b.bx - b.ax), std::abs(b.by - b.ay)));
     for (int s = 0; s <= steps; ++s) {
       const double t = static_cast<double>(s) / steps;
-      const int x = static_cast<int>(std::floor(b.ax + t * (b.bx - b.ax))), y = static_cast<int>(std::floor(b.ay + t * (b.by - b.ay)));
+      const int x = static_cast<int>(std::floor(b.ax + t * (b.bx - b.ax))),
+                y = static_cast<int>(std::floor(b.ay + t * (b.by - b.ay)));
       for (int v = std::max(box_.y0, y); v <= std::min(box_.y1 - 1, y + 1); ++v)
         for (int u = std::max(box_.x0, x); u <= std::min(box_.x1 - 1, x + 1); ++u) offer(u, v, i);
     }
@@ -127,7 +131,8 @@ class NearestPiece {
     const int from = y + from_row;
     if (from >= box_.y0 && from < box_.y1)
       for (int x = box_.x0; x < box_.x1; ++x)
-        for (int u = std::max(box_.x0, x - 1); u <= std::min(box_.x1 - 1, x + 1); ++u) offer(x, y, piece_[index(u, from)]);
+        for (int u = std::max(box_.x0, x - 1); u <= std::min(box_.x1 - 1, x + 1); ++u)
+          offer(x, y, piece_[index(u, from)]);
     for (int x = box_.x0 + 1; x < box_.x1; ++x) offer(x, y, piece_[index(x - 1, y)]);
     for (int x = box_.x1 - 2; x >= box_.x0; --x) offer(x, y, piece_[index(x + 1, y)]);
   }
@@ -157,8 +162,7 @@ Field signed_distance(const Mask& mask, const std::vector<BorderPiece>& border, 
   return field;
 }
 
-Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm,
-                      double limit_mm) {
+Field signed_distance(const Mask& mask, const Box& box, const std::array<double, 2>& pixel_mm, double limit_mm) {
   const int width = mask.box.width(), height = mask.box.height();
   const float limit = static_cast<float>(limit_mm);
   Field field;

@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <tuple>
 
 #include "base/error.h"
-#include "sections/arcs.h"
-#include "sections/components.h"
 #include "model/corner_rule.h"
 #include "model/slices.h"
+#include "sections/arcs.h"
+#include "sections/components.h"
 
 namespace stackmesh {
 namespace {
@@ -45,8 +45,7 @@ class SliceTracer {
     for (const auto& [label, extent] : labels_) trace_label(label, extent.box);
     link();
     for (const auto& [label, extent] : labels_)
-      if (extent.twice_area != 2 * extent.pixels)
-        fail_internal("contours do not enclose a label's pixels", "contours");
+      if (extent.twice_area != 2 * extent.pixels) fail_internal("contours do not enclose a label's pixels", "contours");
     return std::move(out_);
   }
 
@@ -77,9 +76,7 @@ class SliceTracer {
     }
   }
 
-  std::size_t corner(int x, int y) const {
-    return static_cast<std::size_t>(y - all_.y0 + 1) * width_ + (x - all_.x0);
-  }
+  std::size_t corner(int x, int y) const { return static_cast<std::size_t>(y - all_.y0 + 1) * width_ + (x - all_.x0); }
 
   /// findContours on the mask doubled in size: each border sub-pixel (2x + a, 2y + b) stands for corner
   /// (x + a, y + b) of its own pixel, so the border is the crack contour, exactly.
@@ -109,8 +106,7 @@ class SliceTracer {
           cracks_[corner(std::min(last.x, next.x), next.y)] |= kEast;
         else if (next.x == last.x && std::abs(next.y - last.y) == 1)
           cracks_[corner(next.x, std::min(last.y, next.y))] |= kNorth;
-        else
-          fail_internal("a traced border leaves the pixel cracks", "contours");
+        else fail_internal("a traced border leaves the pixel cracks", "contours");
         last = next;
       }
     }
@@ -140,8 +136,7 @@ class SliceTracer {
   }
   int degree(int x, int y) const {
     const std::size_t at = corner(x, y);
-    return (cracks_[at] & 1) + ((cracks_[at] >> 1) & 1) + (cracks_[at - 1] & 1) +
-           ((cracks_[at - width_] >> 1) & 1);
+    return (cracks_[at] & 1) + ((cracks_[at] >> 1) & 1) + (cracks_[at - 1] & 1) + ((cracks_[at - width_] >> 1) & 1);
   }
 
   enum class Corner { pass, junction, join_rising, join_falling };  // rising: the pixels SW and NE are joined
@@ -178,8 +173,7 @@ class SliceTracer {
     std::int64_t twice_area = 0;
     while (true) {
       Crack c = crack(x, y, dir);
-      if (!c.exists() || c.used())
-        fail_internal("a pixel crack was traced by no border, or twice", "contours");
+      if (!c.exists() || c.used()) fail_internal("a pixel crack was traced by no border, or twice", "contours");
       c.use();
       twice_area += static_cast<std::int64_t>(x) * kStepY[dir] - static_cast<std::int64_t>(y) * kStepX[dir];
       x += kStepX[dir];
@@ -214,19 +208,19 @@ class SliceTracer {
     }
     // Joined rising (SW-NE): contours round NW and SE, so cracks pair as (north, west) and (south, east).
     // An arrival by direction d comes through the crack opposite d.
-    static constexpr std::array<int, 4> rising = {1, 0, 3,
-                                                  2};  // east-bound comes from the west crack: goes north
+    static constexpr std::array<int, 4> rising = {1, 0, 3, 2};   // east-bound comes from the west crack: goes north
     static constexpr std::array<int, 4> falling = {3, 2, 1, 0};  // ... goes south
     return kind == Corner::join_rising ? rising[dir] : falling[dir];
   }
 
-  /// Draws a corner that two contours pass on the side of the pixel that this contour turns about, so that the joined label
-  /// grows there: not where it would meet another of its components in the next slice.
+  /// Draws a corner that two contours pass on the side of the pixel that this contour turns about, so that the joined
+  /// label grows there: not where it would meet another of its components in the next slice.
   void draw_apart(CrackVertex& v, int arrived, int leaves) const {
     // The pixel lies between the crack it came by (opposite `arrived`) and the crack it leaves by.
     const int to_x = kStepX[leaves] - kStepX[arrived], to_y = kStepY[leaves] - kStepY[arrived];
     v.home = {v.x * kGridPerPixel + kQuarter * to_x, v.y * kGridPerPixel + kQuarter * to_y};
-    if (const FairedLabels::Corner* c = v.keep ? nullptr : faired(v.x, v.y, to_y < 0 ? FairedLabels::Corner::south : FairedLabels::Corner::north)) {
+    if (const FairedLabels::Corner* c =
+            v.keep ? nullptr : faired(v.x, v.y, to_y < 0 ? FairedLabels::Corner::south : FairedLabels::Corner::north)) {
       v.position = displaced(*c);
     } else {
       v.position = v.home;
@@ -235,16 +229,19 @@ class SliceTracer {
 
   const FairedLabels::Corner* faired(int x, int y, FairedLabels::Corner::Part part) const {
     if (rules_.faired == nullptr) return nullptr;
-    const auto it = std::lower_bound(rules_.faired->begin(), rules_.faired->end(), std::make_tuple(y, x, part),
-                                     [](const FairedLabels::Corner& c, const auto& key) { return std::make_tuple(c.y, c.x, c.part) < key; });
+    const auto it = std::lower_bound(
+        rules_.faired->begin(), rules_.faired->end(), std::make_tuple(y, x, part),
+        [](const FairedLabels::Corner& c, const auto& key) { return std::make_tuple(c.y, c.x, c.part) < key; });
     return it != rules_.faired->end() && it->x == x && it->y == y && it->part == part ? &*it : nullptr;
   }
 
   GridPoint displaced(const FairedLabels::Corner& c) const {
-    const int unit = degree(c.x, c.y) > 2 ? 2 : 1;  // even at junctions: an edge between two of them has its middle on the grid
+    // even at junctions: an edge between two of them has its middle on the grid
+    const int unit = degree(c.x, c.y) > 2 ? 2 : 1;
     const auto units = [&](float d) {
       constexpr float most = 0.498F;
-      return unit * static_cast<std::int32_t>(std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * (kGridPerPixel / unit)));
+      return unit * static_cast<std::int32_t>(
+                        std::lround((rules_.hold ? std::clamp(d, -most, most) : d) * (kGridPerPixel / unit)));
     };
     return {c.x * kGridPerPixel + units(c.dx), c.y * kGridPerPixel + units(c.dy)};
   }
@@ -280,23 +277,28 @@ class SliceTracer {
   /// Which diagonal of a junction is of one label that touches itself there, while the two other labels differ.
   JoinedDiagonal parted_diagonal(int x, int y) const {
     if (!rules_.part || degree(x, y) != 4) return JoinedDiagonal::none;
-    const bool rising = slice_.at(x - 1, y - 1) == slice_.at(x, y), falling = slice_.at(x - 1, y) == slice_.at(x, y - 1);
+    const bool rising = slice_.at(x - 1, y - 1) == slice_.at(x, y),
+               falling = slice_.at(x - 1, y) == slice_.at(x, y - 1);
     if (rising == falling) return JoinedDiagonal::none;
     if ((touching(x, y) & (rising ? 2 | 4 : 1 | 8)) != 0) return JoinedDiagonal::none;  // the two others grow
     return rising ? JoinedDiagonal::rising : JoinedDiagonal::falling;
   }
 
-  /// The vertex at which an arc ends whose crack leads from a junction in direction dir. A label that touches itself there is parted: a
-  /// junction on either side of the corner.
+  /// The vertex at which an arc ends whose crack leads from a junction in direction dir. A label that touches itself
+  /// there is parted: a junction on either side of the corner.
   CrackVertex end_vertex(int x, int y, int dir) const {
     CrackVertex v = vertex(x, y);
     const JoinedDiagonal parted = parted_diagonal(x, y);
     if (parted == JoinedDiagonal::none) return v;
     const bool rising = parted == JoinedDiagonal::rising, high = dir == 0 || dir == (rising ? 1 : 3);
-    const GridPoint off = {high ? kQuarter : -kQuarter, high == rising ? kQuarter : -kQuarter}, corner = {x * kGridPerPixel, y * kGridPerPixel};
-    const auto within = [](std::int32_t d) { return std::clamp(d, -kQuarter / 2, kQuarter / 2); };  // apart, and off the pixels' centres
+    const GridPoint off = {high ? kQuarter : -kQuarter, high == rising ? kQuarter : -kQuarter},
+                    corner = {x * kGridPerPixel, y * kGridPerPixel};
+    // apart, and off the pixels' centres
+    const auto within = [](std::int32_t d) { return std::clamp(d, -kQuarter / 2, kQuarter / 2); };
     v.home = {corner.x + off.x, corner.y + off.y};
-    v.position = v.keep ? v.home : GridPoint{v.home.x + within(v.position.x - corner.x), v.home.y + within(v.position.y - corner.y)};
+    v.position =
+        v.keep ? v.home
+               : GridPoint{v.home.x + within(v.position.x - corner.x), v.home.y + within(v.position.y - corner.y)};
     return v;
   }
 
@@ -333,8 +335,7 @@ class SliceTracer {
     for (std::size_t at = width_; at < end; ++at) {
       std::uint64_t eight;
       std::memcpy(&eight, &cracks_[at], sizeof eight);
-      if (eight == 0)
-        at += 7;
+      if (eight == 0) at += 7;
       else if (cracks_[at] != 0)
         visit(all_.x0 + static_cast<int>(at % width_), all_.y0 + static_cast<int>(at / width_) - 1);
     }

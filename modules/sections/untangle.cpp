@@ -2,8 +2,8 @@
 #include <array>
 #include <unordered_map>
 
-#include "sections/arcs.h"
 #include "model/edge_grid.h"
+#include "sections/arcs.h"
 
 namespace stackmesh {
 namespace {
@@ -19,7 +19,9 @@ struct Vertex {
   }
 };
 
-std::uint64_t key(GridPoint p) { return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y); }
+std::uint64_t key(GridPoint p) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
+}
 
 }  // namespace
 
@@ -40,7 +42,8 @@ std::size_t untangle(std::vector<Arc>& arcs) {
   std::vector<GridSegment> segments(edges.size());
   for (bool any = true; any;) {
     any = false;
-    for (std::size_t e = 0; e < edges.size(); ++e) segments[e] = {vertices[edges[e][0]].place(), vertices[edges[e][1]].place()};
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      segments[e] = {vertices[edges[e][0]].place(), vertices[edges[e][1]].place()};
     const EdgeGrid grid(segments);
     std::vector<char> offends(vertices.size(), 0);
     for (std::size_t e = 0; e < edges.size(); ++e) {

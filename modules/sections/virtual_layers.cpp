@@ -17,8 +17,8 @@ using namespace interpolate;
 
 constexpr int kMostPerGap = 1000;
 constexpr int kMostForNesting = 63, kMostBeyond = 31;
-constexpr int kMargin = 6;                           // pixels round the contours
-constexpr float kNearest = 0.1f, kFurthest = 0.9f;   // a border keeps this far from pixel centres
+constexpr int kMargin = 6;                          // pixels round the contours
+constexpr float kNearest = 0.1f, kFurthest = 0.9f;  // a border keeps this far from pixel centres
 
 struct Extent {
   std::int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;
@@ -39,7 +39,8 @@ class LayerMaker {
     for (const LabelInfo& l : stack.labels) index_of_[l.number] = next++;
   }
 
-  /// Gap k lies beneath section k; 0 and the number of sections are those beyond the stack. @return how much of it is open
+  /// Gap k lies beneath section k; 0 and the number of sections are those beyond the stack. @return how much of it is
+  /// open
   double gap(std::size_t k, const std::function<void(std::size_t, const LabelLayer&)>& take) const {
     const std::size_t n = stack_.sections.size();
     const bool beyond = k == 0 || k == n;
@@ -127,8 +128,8 @@ class LayerMaker {
     return here + there > 0 ? std::clamp(here / (here + there), kNearest, kFurthest) : 0.5f;
   }
 
-  /// Where in a gap a part closes that goes no further, as a share: half way for plane cuts, three quarters for slices (as
-  /// stitched), and for labels that end here as far as their own gap says.
+  /// Where in a gap a part closes that goes no further, as a share: half way for plane cuts, three quarters for slices
+  /// (as stitched), and for labels that end here as far as their own gap says.
   double closes_at(double low, double high) const {
     const double peak = stack_.slices && !stack_.drawn_ends.empty() ? 1.5 : 1;  // of half a gap
     double at = 0;
@@ -136,7 +137,8 @@ class LayerMaker {
       for (bool upward : {true, false}) {
         const DrawnEnd& e = upward ? both.high : both.low;
         if (e.flat || e.last_mm != (upward ? low : high) || !(e.half_gap_mm > 0)) continue;
-        const double tip = upward ? e.contour_mm + peak * e.half_gap_mm - low : high - e.contour_mm + peak * e.half_gap_mm;
+        const double tip =
+            upward ? e.contour_mm + peak * e.half_gap_mm - low : high - e.contour_mm + peak * e.half_gap_mm;
         at = std::max(at, tip / (high - low));
       }
     return at > 0 ? std::clamp(at, 0.05, 1.0) : 0.5 * peak;
@@ -180,7 +182,8 @@ class LayerMaker {
     }
   }
 
-  /// Where borders run: across levels of nesting, at the outline of the deeper one; within a level, where its labels are equal.
+  /// Where borders run: across levels of nesting, at the outline of the deeper one; within a level, where its labels
+  /// are equal.
   static void place_borders(const NestedLayers::Layer& from, LabelLayer& layer) {
     const std::size_t size = from.part.size(), width = layer.width;
     layer.right.assign(size, 0.5f);
@@ -209,7 +212,8 @@ std::vector<int> virtual_sections_per_gap(const Stack& stack, double feature_mm)
   std::vector<int> out;
   for (std::size_t k = 0; k + 1 < stack.sections.size(); ++k) {
     const double ratio = (stack.sections[k + 1].z_mm - stack.sections[k].z_mm) / feature_mm;
-    out.push_back(ratio > 1.5 ? static_cast<int>(std::min<double>(kMostPerGap, std::max(1.0, std::round(ratio) - 1))) : 0);
+    out.push_back(ratio > 1.5 ? static_cast<int>(std::min<double>(kMostPerGap, std::max(1.0, std::round(ratio) - 1)))
+                              : 0);
   }
   return out;
 }
@@ -219,13 +223,15 @@ std::vector<OpenGap> interpolate_sections(const Stack& stack, const VirtualLayer
   if (!(options.tension >= 0 && options.tension <= 1))
     fail_usage("the tension of the spline is not between 0 and 1", std::to_string(options.tension), "leave it at 0.25");
   if (options.per_gap.size() + 1 != stack.sections.size())
-    fail_usage("the numbers of virtual sections do not fit the gaps", std::to_string(options.per_gap.size()), "give one for each gap");
+    fail_usage("the numbers of virtual sections do not fit the gaps", std::to_string(options.per_gap.size()),
+               "give one for each gap");
   for (int count : options.per_gap)
     if (count < 0 || count > kMostPerGap)
-      fail_usage("the number of virtual sections is not between 0 and " + std::to_string(kMostPerGap), std::to_string(count),
-                 "give a smaller number");
+      fail_usage("the number of virtual sections is not between 0 and " + std::to_string(kMostPerGap),
+                 std::to_string(count), "give a smaller number");
   if (options.unit[0] < 64 || options.unit[1] < 64)
-    fail_usage("the raster of virtual sections is too fine for the stack's grid", std::to_string(options.unit[0]), "give larger pixels");
+    fail_usage("the raster of virtual sections is too fine for the stack's grid", std::to_string(options.unit[0]),
+               "give larger pixels");
   const LayerMaker maker(stack, options);
   const std::size_t n = stack.sections.size();
   std::vector<double> open(n + 1, 0);

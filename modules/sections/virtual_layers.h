@@ -14,9 +14,10 @@ struct VirtualLayerOptions {
   std::vector<char> watch;                    ///< gaps where nesting is looked after; empty: all that get layers
   std::array<std::int32_t, 2> unit = {1, 1};  ///< pixel of the raster along x and y, in grid units, 64 or more
   double tension = 0.25;                      ///< as InterpolateOptions::tension
-  double low_end_mm = 0, high_end_mm = 0;     ///< beyond the first and last section: layers in which all labels close at that distance
-  int end_layers = 0;                         ///< how many there, if any
-  int threads = 0;                            ///< 0: all
+  /// beyond the first and last section: layers in which all labels close at that distance
+  double low_end_mm = 0, high_end_mm = 0;
+  int end_layers = 0;  ///< how many there, if any
+  int threads = 0;     ///< 0: all
 };
 
 /// A gap where labels that lie within others in both sections cannot be kept inside between them.
@@ -27,9 +28,9 @@ struct OpenGap {
 
 /// Interpolates label layers between the sections of a stack, as add_virtual_slices does between slices, but from
 /// the exact contours: distances are those to the contours, and each layer knows where between two pixel centres
-/// a border runs. Sections may be unevenly spaced. A label or hole that lies within another label in both sections stays
-/// inside it (interpolate/nested_gap.h); where that takes more layers than requested, the gap gets more. Layers come gap by
-/// gap from several threads, those of a gap in order, the first and last gap being those beyond the stack:
+/// a border runs. Sections may be unevenly spaced. A label or hole that lies within another label in both sections
+/// stays inside it (interpolate/nested_gap.h); where that takes more layers than requested, the gap gets more. Layers
+/// come gap by gap from several threads, those of a gap in order, the first and last gap being those beyond the stack:
 /// take(gap from 0, layer).
 /// @return the gaps where nesting breaks whatever the number of layers
 /// @throws Error(usage) for numbers that make no sense.

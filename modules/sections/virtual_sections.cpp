@@ -9,19 +9,19 @@
 
 #include "base/disjoint_sets.h"
 #include "base/warning.h"
-#include "sections/layer_sections.h"
-#include "sections/virtual_layers.h"
 #include "model/edge_grid.h"
 #include "sections/drawn_detail.h"
+#include "sections/layer_sections.h"
+#include "sections/virtual_layers.h"
 
 namespace stackmesh {
 namespace {
 
-constexpr double kFeaturesAcross = 64;     // of a typical contour
-constexpr double kMostPoints = 5e5;        // of the virtual sections, estimated
-constexpr double kMostPixels = 1024;       // of the raster along the longer side
-constexpr double kTolerance_px = 0.1;      // of the raster
-constexpr double kSame_rel = 0.25;         // of a feature: sections nowhere further apart are the same
+constexpr double kFeaturesAcross = 64;                      // of a typical contour
+constexpr double kMostPoints = 5e5;                         // of the virtual sections, estimated
+constexpr double kMostPixels = 1024;                        // of the raster along the longer side
+constexpr double kTolerance_px = 0.1;                       // of the raster
+constexpr double kSame_rel = 0.25;                          // of a feature: sections nowhere further apart are the same
 constexpr double kWallPixel_rel = 0.4, kFinest_rel = 0.15;  // of a thin wall; of a feature
 constexpr std::int32_t kSmallestUnit = 64;
 
@@ -42,7 +42,8 @@ double extent_mm(const Stack& stack, const Box& box) {
 double total_length_mm(const Stack& stack, const Section& s) {
   double sum = 0;
   for (const SectionEdge& e : s.edges)
-    sum += std::hypot((s.points[e.b].x - s.points[e.a].x) * stack.grid_x_mm, (s.points[e.b].y - s.points[e.a].y) * stack.grid_y_mm);
+    sum += std::hypot((s.points[e.b].x - s.points[e.a].x) * stack.grid_x_mm,
+                      (s.points[e.b].y - s.points[e.a].y) * stack.grid_y_mm);
   return sum;
 }
 
@@ -65,7 +66,8 @@ bool lies_along(const Stack& stack, const Section& one, const Section& other, do
   std::vector<GridSegment> segments;
   for (const SectionEdge& e : other.edges) segments.push_back({other.points[e.a], other.points[e.b]});
   const EdgeGrid grid(segments);
-  const std::int32_t rx = static_cast<std::int32_t>(reach_mm / stack.grid_x_mm) + 1, ry = static_cast<std::int32_t>(reach_mm / stack.grid_y_mm) + 1;
+  const std::int32_t rx = static_cast<std::int32_t>(reach_mm / stack.grid_x_mm) + 1,
+                     ry = static_cast<std::int32_t>(reach_mm / stack.grid_y_mm) + 1;
   for (const SectionEdge& e : one.edges)
     for (std::int32_t v : {e.a, e.b}) {
       const GridPoint p = one.points[v];
@@ -82,7 +84,8 @@ bool lies_along(const Stack& stack, const Section& one, const Section& other, do
 
 /// A pixel of about that size, odd, so that pixel centres lie between grid points.
 std::int32_t odd_unit(double size_mm, double grid_mm) {
-  const std::int32_t unit = static_cast<std::int32_t>(std::min(1e7, std::max<double>(kSmallestUnit, size_mm / grid_mm)));
+  const std::int32_t unit =
+      static_cast<std::int32_t>(std::min(1e7, std::max<double>(kSmallestUnit, size_mm / grid_mm)));
   return unit | 1;
 }
 
@@ -97,7 +100,8 @@ double contour_feature_mm(const Stack& stack) {
   for (;; feature *= 1.25) {
     double points = 0;
     const std::vector<int> per_gap = virtual_sections_per_gap(stack, feature);
-    for (std::size_t k = 0; k < per_gap.size(); ++k) points += per_gap[k] * std::max(length[k], length[k + 1]) / feature;
+    for (std::size_t k = 0; k < per_gap.size(); ++k)
+      points += per_gap[k] * std::max(length[k], length[k + 1]) / feature;
     if (points <= kMostPoints) return feature;
   }
 }
@@ -106,14 +110,16 @@ namespace {
 
 /// Does any contour of the section lie within another one? Each label and each hole in it counts.
 bool has_nesting(const Section& s) {
-  // A region's outline that touches no other one lies in something if that side of it is a label, or if it goes round a hole.
+  // A region's outline that touches no other one lies in something if that side of it is a label, or if it goes round a
+  // hole.
   DisjointSets contours(s.points.size());
   for (const SectionEdge& e : s.edges) contours.join(e.a, e.b);
   std::vector<double> twice(s.points.size(), 0);  // of a connected contour, with its label on the left
   for (const SectionEdge& e : s.edges) {
     if (e.left != 0 && e.right != 0) return true;  // labels that touch, or one in another
     const GridPoint a = s.points[e.a], b = s.points[e.b];
-    twice[contours.find(e.a)] += (e.left != 0 ? 1.0 : -1.0) * (static_cast<double>(a.x) * b.y - static_cast<double>(b.x) * a.y);
+    twice[contours.find(e.a)] +=
+        (e.left != 0 ? 1.0 : -1.0) * (static_cast<double>(a.x) * b.y - static_cast<double>(b.x) * a.y);
   }
   return std::any_of(twice.begin(), twice.end(), [](double t) { return t < 0; });
 }
@@ -139,7 +145,8 @@ double closing_mm(const Stack& stack, bool high) {
 
 }  // namespace
 
-std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads, std::vector<Warning>& warnings) {
+std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int threads,
+                                 std::vector<Warning>& warnings) {
   if (stack.sections.size() < 2) return 0;
   const std::size_t gaps = stack.sections.size() - 1;
   const double feature = contour_feature_mm(stack);
@@ -151,15 +158,20 @@ std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int t
   options.watch.assign(gaps, 0);
   for (std::size_t k = 0; k < gaps; ++k) {
     const Section &low = stack.sections[k], &high = stack.sections[k + 1];
-    const auto same = [&](double reach) { return lies_along(stack, low, high, reach) && lies_along(stack, high, low, reach); };
+    const auto same = [&](double reach) {
+      return lies_along(stack, low, high, reach) && lies_along(stack, high, low, reach);
+    };
     // Walls between sections that are all but the same are straight as they are.
     if (!per_gap && options.per_gap[k] > 0 && same(kSame_rel * feature)) options.per_gap[k] = 0;
-    options.watch[k] = nests && has_nesting(low) && has_nesting(high) && !(options.per_gap[k] == 0 && same(kSame_rel * std::min(feature, wall)));
+    options.watch[k] = nests && has_nesting(low) && has_nesting(high) &&
+                       !(options.per_gap[k] == 0 && same(kSame_rel * std::min(feature, wall)));
   }
   options.low_end_mm = nests ? closing_mm(stack, false) : 0;
   options.high_end_mm = nests ? closing_mm(stack, true) : 0;
-  options.end_layers = static_cast<int>(std::clamp(std::round(std::max(options.low_end_mm, options.high_end_mm) / feature), 3.0, 12.0));
-  const bool any = options.low_end_mm > 0 || options.high_end_mm > 0 || std::count(options.watch.begin(), options.watch.end(), 0) < static_cast<std::ptrdiff_t>(gaps) ||
+  options.end_layers =
+      static_cast<int>(std::clamp(std::round(std::max(options.low_end_mm, options.high_end_mm) / feature), 3.0, 12.0));
+  const bool any = options.low_end_mm > 0 || options.high_end_mm > 0 ||
+                   std::count(options.watch.begin(), options.watch.end(), 0) < static_cast<std::ptrdiff_t>(gaps) ||
                    std::accumulate(options.per_gap.begin(), options.per_gap.end(), 0) > 0;
   if (!any) return 0;
   Box box;
@@ -183,10 +195,15 @@ std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int t
     between[gap].push_back(layer_section(layer, kTolerance_px));
   });
   for (const OpenGap& g : open)
-    warnings.push_back({WarningCode::open_wall, "", "between the sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " + text_of(stack.sections[g.gap + 1].z_mm) +
-                       " mm contours that lie within others cannot be kept inside: a wall is open over about " + text_of(g.area_mm2) + " mm2"});
+    warnings.push_back({WarningCode::open_wall, "",
+                        "between the sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " +
+                            text_of(stack.sections[g.gap + 1].z_mm) +
+                            " mm contours that lie within others cannot be kept inside: a wall is open over about " +
+                            text_of(g.area_mm2) + " mm2"});
   for (std::size_t end : {std::size_t{0}, gaps + 1})  // the stitcher closes the last of them
-    between[end].erase(std::remove_if(between[end].begin(), between[end].end(), [](const Section& s) { return s.edges.empty(); }), between[end].end());
+    between[end].erase(
+        std::remove_if(between[end].begin(), between[end].end(), [](const Section& s) { return s.edges.empty(); }),
+        between[end].end());
   std::size_t total = 0;
   std::vector<Section> all;
   for (std::size_t k = 0; k < between.size(); ++k) {

@@ -70,19 +70,16 @@ int automatic_per_gap(double gap_mm, double pixel_mm) {
 int virtual_slices_per_gap(const LabelVolume& volume, int axis, const InterpolateOptions& options) {
   if (axis < 0 || axis > 2) fail_usage("no such stacking axis", std::to_string(axis), "give 0, 1 or 2");
   const double pixel_mm = std::min(volume.spacing_mm[(axis + 1) % 3], volume.spacing_mm[(axis + 2) % 3]);
-  const int per_gap =
-      options.per_gap ? *options.per_gap : automatic_per_gap(volume.spacing_mm[axis], pixel_mm);
+  const int per_gap = options.per_gap ? *options.per_gap : automatic_per_gap(volume.spacing_mm[axis], pixel_mm);
   if (per_gap < 0 || per_gap > kMostPerGap)
     fail_usage("the number of virtual sections is not between 0 and " + std::to_string(kMostPerGap),
                std::to_string(per_gap), "give a smaller number, or none for the automatic choice");
   return volume.size[axis] < 2 ? 0 : per_gap;
 }
 
-InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int axis,
-                                      const InterpolateOptions& options) {
+InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int axis, const InterpolateOptions& options) {
   if (!(options.tension >= 0 && options.tension <= 1))
-    fail_usage("the tension of the spline is not between 0 and 1", std::to_string(options.tension),
-               "leave it at 0.25");
+    fail_usage("the tension of the spline is not between 0 and 1", std::to_string(options.tension), "leave it at 0.25");
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const std::array<double, 2> pixel_mm = {volume.spacing_mm[u], volume.spacing_mm[v]};
   InterpolatedVolume result;
@@ -108,8 +105,7 @@ InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int axis,
         out.voxels[to.at(x, y, slice * stride)] = volume.voxels[from.at(x, y, slice)];
   });
   parallel_for(from.count - 1, options.threads, [&](std::size_t k) {
-    const int first = std::max(0, static_cast<int>(k) - 1),
-              last = std::min(from.count - 1, static_cast<int>(k) + 2);
+    const int first = std::max(0, static_cast<int>(k) - 1), last = std::min(from.count - 1, static_cast<int>(k) + 2);
     Box box = boxes[k];
     box.add(boxes[k + 1]);
     if (box.empty()) return;

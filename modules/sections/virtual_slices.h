@@ -29,7 +29,6 @@ int virtual_slices_per_gap(const LabelVolume& volume, int stacking_axis, const I
 /// The order of the labels' numbers plays no part but in exact ties of labels that neither neighbouring slice
 /// holds at the pixel.
 /// @throws Error(usage) for a negative or huge per_gap, a tension outside [0, 1] or an axis that is none.
-InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int stacking_axis,
-                                      const InterpolateOptions& options);
+InterpolatedVolume add_virtual_slices(const LabelVolume& volume, int stacking_axis, const InterpolateOptions& options);
 
 }  // namespace stackmesh

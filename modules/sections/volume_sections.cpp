@@ -7,17 +7,19 @@
 #include "base/error.h"
 #include "base/warning.h"
 #include "fair/fair_labels.h"
-#include "sections/virtual_slices.h"
 #include "sections/gap_pieces.h"
+#include "sections/virtual_slices.h"
 
 namespace stackmesh {
 namespace {
 
 constexpr double kSimplifyFaired_px = 0.05, kSimplifyCracks_px = 0.5;
 
-VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_per_gap, const SectionOptions& options, Monitor& progress) {
+VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_per_gap, const SectionOptions& options,
+                              Monitor& progress) {
   ContourOptions contours = options.contours;
-  contours.axis = std::array{StackAxis::x, StackAxis::y, StackAxis::z}[axis];  // the spacing of a dense volume would choose anew
+  // the spacing of a dense volume would choose anew
+  contours.axis = std::array{StackAxis::x, StackAxis::y, StackAxis::z}[axis];
   contours.virtual_per_gap = virtual_per_gap;
   const bool faired = options.band_px > 0;
   contours.simplify_px = options.simplify_px.value_or(faired ? kSimplifyFaired_px : kSimplifyCracks_px);
@@ -36,9 +38,12 @@ VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_p
     for (int gap : other)
       for (int k = gap * period + 1; k < (gap + 1) * period; ++k) places.free[k] = 0;
     out.contours = extract_sections(volume, contours, progress, &places);
-    out.warnings.push_back({WarningCode::held_to_slices, "", "between slices " + std::to_string(other.front() + 1) + " and " + std::to_string(other.front() + 2) +
-                           (other.size() > 1 ? " and in " + std::to_string(other.size() - 1) + " more gaps" : "") +
-                           " smooth sections would join or split pieces of a label: they keep closer to the interpolated slices there"});
+    out.warnings.push_back({WarningCode::held_to_slices, "",
+                            "between slices " + std::to_string(other.front() + 1) + " and " +
+                                std::to_string(other.front() + 2) +
+                                (other.size() > 1 ? " and in " + std::to_string(other.size() - 1) + " more gaps" : "") +
+                                " smooth sections would join or split pieces of a label: they keep closer to the "
+                                "interpolated slices there"});
   }
   out.faired = std::move(places.surface);
   return out;
@@ -49,7 +54,8 @@ VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_p
 void check_slices(const LabelVolume& volume, StackAxis axis, const std::string& name) {
   const int a = stacking_axis(volume, axis);
   if (volume.size[a] < 2)
-    fail_input(std::string("only one slice along the stacking axis ") + "xyz"[a], name, "give a stack of at least two slices, or choose another --axis");
+    fail_input(std::string("only one slice along the stacking axis ") + "xyz"[a], name,
+               "give a stack of at least two slices, or choose another --axis");
 }
 
 VolumeSections volume_sections(const LabelVolume& volume, const SectionOptions& options, Monitor& progress) {

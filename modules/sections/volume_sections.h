@@ -5,9 +5,9 @@
 
 #include "base/monitor.h"
 #include "base/warning.h"
-#include "sections/extract.h"
 #include "model/complex.h"
 #include "model/label_volume.h"
+#include "sections/extract.h"
 
 namespace stackmesh {
 

@@ -39,7 +39,8 @@ bool is_sound(const Section& s) {
 }
 
 /// Each point of `section` moved to the nearest vertex of `beneath`, else onto its nearest edge, within tolerance.
-std::vector<GridPoint> drawn_points(const Stack& stack, const Section& section, const Section& beneath, double tolerance_mm) {
+std::vector<GridPoint> drawn_points(const Stack& stack, const Section& section, const Section& beneath,
+                                    double tolerance_mm) {
   const std::vector<GridSegment> segments = segments_of(beneath);
   const EdgeGrid grid(segments);
   const double gx = stack.grid_x_mm, gy = stack.grid_y_mm;

@@ -80,7 +80,8 @@ class SegmentDistance {
         for (int u = cx - ring; u <= cx + ring; u += step) {
           if (u < 0 || u >= nx_) continue;
           const std::size_t c = static_cast<std::size_t>(v) * nx_ + u;
-          for (std::int32_t k = start_[c]; k < start_[c + 1]; ++k) best = std::min(best, squared(segments_[items_[k]], x, y));
+          for (std::int32_t k = start_[c]; k < start_[c + 1]; ++k)
+            best = std::min(best, squared(segments_[items_[k]], x, y));
         }
       }
       // Whatever lies in further rings is at least this far from a point inside the grid.

@@ -9,7 +9,8 @@ using Orders = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
 void to_sets(Orders& below, DisjointSets& same) {
   for (auto& b : below) b = {same.find(b.first), same.find(b.second)};
-  below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }), below.end());
+  below.erase(std::remove_if(below.begin(), below.end(), [](const auto& b) { return b.first == b.second; }),
+              below.end());
   std::sort(below.begin(), below.end());
   below.erase(std::unique(below.begin(), below.end()), below.end());
 }
@@ -20,7 +21,9 @@ Orders in_cycles(Orders orders, std::size_t sheets) {
     before = orders.size();
     std::vector<char> has_lower(sheets, 0), has_higher(sheets, 0);
     for (const auto& w : orders) has_higher[w.first] = has_lower[w.second] = 1;
-    orders.erase(std::remove_if(orders.begin(), orders.end(), [&](const auto& w) { return !has_lower[w.first] || !has_higher[w.second]; }), orders.end());
+    orders.erase(std::remove_if(orders.begin(), orders.end(),
+                                [&](const auto& w) { return !has_lower[w.first] || !has_higher[w.second]; }),
+                 orders.end());
   }
   return orders;
 }

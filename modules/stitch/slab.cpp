@@ -18,33 +18,33 @@ constexpr double kLowest = 0.02, kHighest = 0.98;    // clamp of equation (1)
 
 /// What the rim of a sheet is like at one of its vertices.
 enum RimBits : std::uint8_t {
-  kRimLower = 1,   // an edge of the lower section alone
-  kRimUpper = 2,   // an edge of the upper section alone
-  kRimBoth = 4,    // an edge of both
+  kRimLower = 1,    // an edge of the lower section alone
+  kRimUpper = 2,    // an edge of the upper section alone
+  kRimBoth = 4,     // an edge of both
   kInnerLower = 8,  // an edge of the lower section that the sheet passes over (the groove of docs/stitching.md)
   kInnerUpper = 16
 };
 
 /// A vertex of the plane as one sheet sees it.
 struct Copy {
-  std::int32_t next;   // the same vertex in another sheet
+  std::int32_t next;  // the same vertex in another sheet
   std::int32_t sheet;
   std::uint8_t rim;
   std::uint8_t rim_edges;  // edges of the sheet's rim that meet here
-  double height;       // 0 lower section .. 1 upper section; set by place_copies
-  std::int32_t out;    // number of the 3-D vertex
+  double height;           // 0 lower section .. 1 upper section; set by place_copies
+  std::int32_t out;        // number of the 3-D vertex
 };
 
 /// A maximal set of triangles with l != u that is not cut by a coincident edge: one continuous height field.
 struct Sheet {
-  std::uint8_t rims = 0;       // union over its rim edges
+  std::uint8_t rims = 0;  // union over its rim edges
   EndShape end = EndShape::round;
-  double scale = 1;            // of a round end: SlabEnd::scale
-  bool flat = false;           // an end of a single section that is closed by a plane
-  bool has_inner = false;      // has vertices that are neither on its rim nor flat
-  int layer = 0;               // order of sheets that meet over a coincident edge
-  double reach = 0;            // largest distance of an inner vertex from the rim
-  double exponent = 1;         // of equation (1)
+  double scale = 1;                    // of a round end: SlabEnd::scale
+  bool flat = false;                   // an end of a single section that is closed by a plane
+  bool has_inner = false;              // has vertices that are neither on its rim nor flat
+  int layer = 0;                       // order of sheets that meet over a coincident edge
+  double reach = 0;                    // largest distance of an inner vertex from the rim
+  double exponent = 1;                 // of equation (1)
   double rim_rise = 0, dome_rise = 0;  // of a round end: height = rim_rise + dome_rise * the dome's profile
   SegmentDistance lower, upper;
   bool single() const { return rims == kRimLower || rims == kRimUpper; }
@@ -121,9 +121,10 @@ class SlabStitcher {
   std::pair<EndShape, double> end_shape(const PlanarFace& face, bool upward) const {
     const auto& ends = upward ? in_.upward_ends : in_.downward_ends;
     const Label label = upward ? face.lower : face.upper;
-    const auto it = std::lower_bound(ends.begin(), ends.end(), label,
-                                     [](const SlabEnd& e, Label l) { return e.label < l; });
-    return it != ends.end() && it->label == label ? std::make_pair(it->shape, it->scale) : std::make_pair(EndShape::round, 1.0);
+    const auto it =
+        std::lower_bound(ends.begin(), ends.end(), label, [](const SlabEnd& e, Label l) { return e.label < l; });
+    return it != ends.end() && it->label == label ? std::make_pair(it->shape, it->scale)
+                                                  : std::make_pair(EndShape::round, 1.0);
   }
 
   /// A sheet that a single section bounds is an end: its labels may end in different shapes, so it is cut into
@@ -208,7 +209,8 @@ class SlabStitcher {
         if (continues(f, i)) bit = of == kLower ? kInnerLower : kInnerUpper;
         for (const int end : {Cdt::cw(i), Cdt::ccw(i)}) {
           copies_[copy[end]].rim |= bit;
-          if (!(bit & (kInnerLower | kInnerUpper)) && copies_[copy[end]].rim_edges < 255) ++copies_[copy[end]].rim_edges;
+          if (!(bit & (kInnerLower | kInnerUpper)) && copies_[copy[end]].rim_edges < 255)
+            ++copies_[copy[end]].rim_edges;
         }
       }
     }
@@ -291,9 +293,7 @@ class SlabStitcher {
     ++out_.added_points;
   }
 
-  bool is_inner(const Copy& c) const {
-    return !sheets_[c.sheet].flat && !(c.rim & (kRimLower | kRimUpper | kRimBoth));
-  }
+  bool is_inner(const Copy& c) const { return !sheets_[c.sheet].flat && !(c.rim & (kRimLower | kRimUpper | kRimBoth)); }
 
   /// Heights of all copies, and their 3-D vertices. On a rim: the section, or between both where both meet.
   /// Inside: equation (1), with distances to the sheet's own rim.
@@ -335,11 +335,11 @@ class SlabStitcher {
   /// the peak if that is not enough. Other sheets with points inside: equation (1) gets an exponent.
   void keep_volumes() {
     struct Sums {
-      double area = 0, may_rise = 0, height = 0;           // height: without the inner points of a sheet that is no end
-      std::vector<std::pair<double, double>> inner;        // their heights and areas
+      double area = 0, may_rise = 0, height = 0;     // height: without the inner points of a sheet that is no end
+      std::vector<std::pair<double, double>> inner;  // their heights and areas
     };
     std::vector<Sums> sums(sheets_.size());
-    std::vector<double> around(copies_.size(), 0);         // area that a copy's height counts for
+    std::vector<double> around(copies_.size(), 0);  // area that a copy's height counts for
     for (const FaceHandle f : cdt().finite_face_handles()) {
       if (!f->info().in_domain() || sheets_[f->info().sheet].flat || !sheets_[f->info().sheet].has_inner) continue;
       const double third = cdt().triangle(f).area() / 3;
@@ -368,9 +368,11 @@ class SlabStitcher {
         sheets_[s].exponent = exponent_for(0.5 * sums[s].area - sums[s].height, sums[s].inner);
         continue;
       }
-      const double holds = sheets_[s].scale * in_.round_holds_rel, peak = 1.5 * holds;  // a dome holds two thirds of its height
+      // a dome holds two thirds of its height
+      const double holds = sheets_[s].scale * in_.round_holds_rel, peak = 1.5 * holds;
       const double profile = sums[s].height / sums[s].area, rising = sums[s].may_rise / sums[s].area;
-      const double rim = rising > profile ? std::clamp((holds - peak * profile) / (rising - profile), 0.0, kRimRise) : 0;
+      const double rim =
+          rising > profile ? std::clamp((holds - peak * profile) / (rising - profile), 0.0, kRimRise) : 0;
       const double dome = profile > 0 ? std::min((holds - rim * rising) / profile, kPeakRise - rim) : peak - rim;
       sheets_[s].rim_rise = rim;
       sheets_[s].dome_rise = std::max(dome, kLowest);
@@ -426,7 +428,8 @@ class SlabStitcher {
     const bool upward = s.rims == kRimLower;
     double rise = may_rise(v, c) ? s.rim_rise + s.dome_rise * c.height : 0;
     if (is_inner(c)) rise = std::max(rise, kLowest);
-    for (std::int32_t k = first_copy_[v]; k >= 0; k = copies_[k].next) {  // not above a flat end beside it: their seam is a wall
+    // not above a flat end beside it: their seam is a wall
+    for (std::int32_t k = first_copy_[v]; k >= 0; k = copies_[k].next) {
       const Sheet& other = sheets_[copies_[k].sheet];
       if (other.flat && other.rims == s.rims && other.end == EndShape::flat) rise = std::min(rise, kHalf);
     }
@@ -477,7 +480,8 @@ class SlabStitcher {
     for (std::int32_t k = first_level_[v]; k >= 0; k = levels_[k].next)
       if (levels_[k].height == height) return levels_[k].out;
     const PlanarPoint& p = plane_.handles[v]->point();
-    const std::int32_t out = static_cast<std::int32_t>(in_.lower->points.size() + in_.upper->points.size() + out_.points.size());
+    const std::int32_t out =
+        static_cast<std::int32_t>(in_.lower->points.size() + in_.upper->points.size() + out_.points.size());
     out_.points.push_back({p.x(), p.y(), in_.z_low_mm + height * (in_.z_high_mm - in_.z_low_mm)});
     levels_.push_back({first_level_[v], height, out});
     first_level_[v] = static_cast<std::int32_t>(levels_.size() - 1);
@@ -515,7 +519,8 @@ class SlabStitcher {
   }
 
   /// A wall over edge v -> w between heights (v_low, w_low) and (v_high, w_high): `left` on the left of the edge.
-  void emit_wall(VertexHandle v, VertexHandle w, std::array<double, 2> low, std::array<double, 2> high, Label left, Label right) {
+  void emit_wall(VertexHandle v, VertexHandle w, std::array<double, 2> low, std::array<double, 2> high, Label left,
+                 Label right) {
     if (left == right || (low[0] == high[0] && low[1] == high[1])) return;
     chain(v, low[0], high[0], chain_v_);
     chain(w, low[1], high[1], chain_w_);
@@ -555,7 +560,8 @@ class SlabStitcher {
       if (!r.in_domain()) hr = hl;
       constexpr std::array<double, 2> bottom = {0, 0}, top = {1, 1};
       const bool left_beneath = hl[0] <= hr[0] && hl[1] <= hr[1];
-      if (!left_beneath && (hl[0] < hr[0] || hl[1] < hr[1])) fail_internal("two sheets cross over a contour edge", "stitching");
+      if (!left_beneath && (hl[0] < hr[0] || hl[1] < hr[1]))
+        fail_internal("two sheets cross over a contour edge", "stitching");
       const auto& first = left_beneath ? hl : hr;
       const auto& second = left_beneath ? hr : hl;
       emit_wall(v, w, bottom, first, l.lower, r.lower);
@@ -579,6 +585,8 @@ class SlabStitcher {
 
 }  // namespace
 
-SlabSurface stitch_slab(const SlabInput& input) { return SlabStitcher(input).run(); }
+SlabSurface stitch_slab(const SlabInput& input) {
+  return SlabStitcher(input).run();
+}
 
 }  // namespace stackmesh

@@ -9,9 +9,9 @@ namespace stackmesh {
 
 /// How the end of a label's part is closed where the neighbouring section has nothing to stitch it to.
 enum class EndShape : std::uint8_t {
-  round,     ///< a dome
-  flat,      ///< straight walls, then a plane half a gap beyond the section (the outer voxel face)
-  on_plane   ///< a plane on the section itself (plane cuts)
+  round,    ///< a dome
+  flat,     ///< straight walls, then a plane half a gap beyond the section (the outer voxel face)
+  on_plane  ///< a plane on the section itself (plane cuts)
 };
 
 /// How an end of a label's part is closed in one slab.

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "planar/snap_rounding.h"
 #include "stitch/merge_tolerance.h"
 #include "stitch/slab.h"
-#include "planar/snap_rounding.h"
 
 namespace stackmesh {
 namespace {
@@ -86,7 +86,8 @@ class StackStitcher {
     if (const DrawnEnd* drawn = drawn_end(label, high)) return drawn->area_rel >= options_.flat_area_rel;
     const std::size_t end = high ? extent.last : extent.first;
     const auto& border = high ? stack_.touches_high : stack_.touches_low;
-    if (end == (high ? sections() - 1 : 0) && std::find(border.begin(), border.end(), label) != border.end()) return true;
+    if (end == (high ? sections() - 1 : 0) && std::find(border.begin(), border.end(), label) != border.end())
+      return true;
     if (extent.first == extent.last) return false;
     // By real sections: those between them are interpolated, and shrink before an end.
     const auto towards_inside = [&](std::size_t i) {
@@ -97,8 +98,9 @@ class StackStitcher {
       } while (stack_.sections[i].interpolated);
       return i;
     };
-    const std::size_t last = stack_.sections[end].interpolated ? towards_inside(end) : end, beside = towards_inside(last);
-    if (last == beside || stack_.sections[beside].interpolated) return false;  // one real section
+    const std::size_t last = stack_.sections[end].interpolated ? towards_inside(end) : end,
+                      beside = towards_inside(last);
+    if (last == beside || stack_.sections[beside].interpolated) return false;     // one real section
     const double here = enclosed_area_mm2(stack_, stack_.sections[last], label);  // a wall ends as what lies in it does
     return here >= options_.flat_area_rel * enclosed_area_mm2(stack_, stack_.sections[beside], label);
   }
@@ -110,7 +112,8 @@ class StackStitcher {
     for (bool up : {true, false}) {
       std::map<Label, SlabEnd> ends;
       for (Label l : up ? flat_upward_ : flat_downward_) ends[l] = {l, plane, 1};
-      if (options_.caps == Caps::flat && options_.label_caps.count(0) == 0) ends[0] = {0, plane, 1};  // holes end flat too
+      // holes end flat too
+      if (options_.caps == Caps::flat && options_.label_caps.count(0) == 0) ends[0] = {0, plane, 1};
       for (const auto& [l, extent] : ends_) {
         if (up ? extent.last + 1 != k : extent.first != k) continue;
         const auto& flat = up ? flat_high_ : flat_low_;
@@ -179,7 +182,8 @@ class StackStitcher {
       triangles += slabs_[k].triangles.size();
       result_.added_points += slabs_[k].added_points;
     }
-    if (slab_base[n + 1] > 0x7fffffff) throw Error(ErrorKind::no_result, "more than 2^31 points", "stitching", "simplify the contours");
+    if (slab_base[n + 1] > 0x7fffffff)
+      throw Error(ErrorKind::no_result, "more than 2^31 points", "stitching", "simplify the contours");
     InterfaceComplex& complex = result_.complex;
     complex.triangles.reserve(triangles);
     std::vector<std::int32_t> used(slab_base[n + 1], 0);
@@ -192,7 +196,7 @@ class StackStitcher {
         out.above = t.above;
         for (int i = 0; i < 3; ++i) {
           const std::size_t v = t.v[i];
-          const std::size_t id = v < lower ? section_base[k - 1] + v
+          const std::size_t id = v < lower           ? section_base[k - 1] + v
                                  : v < lower + upper ? section_base[k] + (v - lower)
                                                      : slab_base[k] + (v - lower - upper);
           out.v[i] = static_cast<std::int32_t>(id);
@@ -205,7 +209,8 @@ class StackStitcher {
     for (std::int32_t& u : used) u = u ? count++ : -1;
     complex.points.reserve(count);
     // In the plane all points go through one monotone map, so nothing changes sides.
-    const double to_mm_x = stack_.grid_x_mm / scale_x_, to_mm_y = stack_.grid_x_mm * (stack_.grid_y_mm / stack_.grid_x_mm / scale_y_);
+    const double to_mm_x = stack_.grid_x_mm / scale_x_,
+                 to_mm_y = stack_.grid_x_mm * (stack_.grid_y_mm / stack_.grid_x_mm / scale_y_);
     const auto add = [&](std::size_t id, double x, double y, double z) {
       if (used[id] >= 0) complex.points.push_back({x * to_mm_x, y * to_mm_y, z});
     };
@@ -229,7 +234,7 @@ class StackStitcher {
   StitchResult result_;
   const Section empty_;
   std::vector<std::pair<Label, std::size_t>> flat_low_, flat_high_;  // label, its first or last section
-  std::set<Label> flat_downward_, flat_upward_;  // whatever ends there: requested
+  std::set<Label> flat_downward_, flat_upward_;                      // whatever ends there: requested
   std::map<Label, Extent> ends_;
   std::vector<SlabSurface> slabs_;
   double scale_x_ = 1, scale_y_ = 1;

@@ -21,9 +21,9 @@ struct LabelEndCaps {
 struct StitchOptions {
   Caps caps = Caps::automatic;               ///< for every label without an entry in label_caps
   std::map<Label, LabelEndCaps> label_caps;  ///< per label
-  double flat_area_rel = 0.7;         ///< automatic: flat when the end section keeps this share of its neighbour's area
-  double snap_mm = 0;                 ///< merge tolerance between neighbouring contours (paper 3.2.1); 0: none
-  int threads = 0;                    ///< 0: all
+  double flat_area_rel = 0.7;  ///< automatic: flat when the end section keeps this share of its neighbour's area
+  double snap_mm = 0;          ///< merge tolerance between neighbouring contours (paper 3.2.1); 0: none
+  int threads = 0;             ///< 0: all
 };
 
 /// What was chosen for a label's ends: "flat" or "round".
@@ -32,11 +32,12 @@ struct LabelCaps {
 };
 
 struct StitchResult {
-  InterfaceComplex complex;            ///< stack coordinates, mm
-  Stack stack;                         ///< the sections as they were stitched: snap-rounded, so that edges meet at common end points only
-  std::size_t added_points = 0;        ///< points that no section has (paper 3.3)
+  InterfaceComplex complex;  ///< stack coordinates, mm
+  /// the sections as they were stitched: snap-rounded, so that edges meet at common end points only
+  Stack stack;
+  std::size_t added_points = 0;  ///< points that no section has (paper 3.3)
   std::map<Label, LabelCaps> caps;
-  double snap_used_mm = 0;             ///< largest merge tolerance that was applied
+  double snap_used_mm = 0;  ///< largest merge tolerance that was applied
   std::vector<Warning> warnings;
 };
 

@@ -30,20 +30,24 @@ std::vector<std::vector<BandStrip>> find_bands(const LabelRuns& runs, std::size_
       for (const std::int32_t plane_of : {v, v + 1})
         for (const std::int32_t row_of : {u, u + 1}) {
           if (plane_of < 0 || plane_of >= planes || row_of < 0 || row_of >= rows) continue;
-          const std::size_t line = static_cast<std::size_t>(plane_of) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row_of);
+          const std::size_t line =
+              static_cast<std::size_t>(plane_of) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row_of);
           for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
             const LabelRun& r = runs.runs[k];
             events.push_back({r.label, r.begin - 1, 1, 0}), events.push_back({r.label, r.end, -1, 0});
-            if (r.end - r.begin > 1) events.push_back({r.label, r.begin, 0, 1}), events.push_back({r.label, r.end - 1, 0, -1});
+            if (r.end - r.begin > 1)
+              events.push_back({r.label, r.begin, 0, 1}), events.push_back({r.label, r.end - 1, 0, -1});
           }
         }
-      std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.label != b.label ? a.label < b.label : a.at < b.at; });
+      std::sort(events.begin(), events.end(),
+                [](const Event& a, const Event& b) { return a.label != b.label ? a.label < b.label : a.at < b.at; });
       int any = 0, both = 0;
       std::int32_t since = 0;
       bool inside = false;
       for (std::size_t i = 0; i < events.size();) {
         const std::int32_t label = events[i].label, at = events[i].at;
-        for (; i < events.size() && events[i].label == label && events[i].at == at; ++i) any += events[i].any, both += events[i].both;
+        for (; i < events.size() && events[i].label == label && events[i].at == at; ++i)
+          any += events[i].any, both += events[i].both;
         const bool mixed = any > 0 && both < 4;  // all eight centres: both ends of the cell on all four lines
         if (inside && !mixed) of_plane[plane].push_back({label, {since, at, u, v}});
         if (mixed && !inside) since = at;
@@ -62,7 +66,8 @@ std::vector<std::vector<BandStrip>> find_bands(const LabelRuns& runs, std::size_
 std::vector<Rectangle> boxes_of_band(const LabelRuns& runs, const std::vector<BandStrip>& band, const Vec3& wider_mm) {
   std::vector<Rectangle> boxes;
   boxes.reserve(band.size());
-  for (const BandStrip& s : band) boxes.push_back({runs.place(s.begin, s.u, s.v) - wider_mm, runs.place(s.end, s.u + 1, s.v + 1) + wider_mm});
+  for (const BandStrip& s : band)
+    boxes.push_back({runs.place(s.begin, s.u, s.v) - wider_mm, runs.place(s.end, s.u + 1, s.v + 1) + wider_mm});
   return boxes;
 }
 

@@ -19,7 +19,12 @@ struct EdgeSide {
 class BoundaryFinder {
  public:
   BoundaryFinder(const InterfaceComplex& complex, std::size_t limit, bool neighbours, Boundaries& out)
-      : complex_(complex), limit_(limit), neighbours_(neighbours), out_(out), sides_(2 * complex.triangles.size()), fans_(6 * complex.triangles.size()) {}
+      : complex_(complex),
+        limit_(limit),
+        neighbours_(neighbours),
+        out_(out),
+        sides_(2 * complex.triangles.size()),
+        fans_(6 * complex.triangles.size()) {}
 
   void run() {
     check_input();
@@ -36,13 +41,11 @@ class BoundaryFinder {
       for (const std::int32_t v : complex_.triangles[t].v)
         if (v < 0 || v >= n)
           fail_input("a triangle names a point that does not exist",
-                     "triangle " + std::to_string(t) + ", point " + std::to_string(v),
-                     "write the mesh again");
+                     "triangle " + std::to_string(t) + ", point " + std::to_string(v), "write the mesh again");
     for (std::size_t p = 0; p < complex_.points.size(); ++p) {
       const Vec3& v = complex_.points[p];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-        fail_input("a coordinate is not a finite number", "point " + std::to_string(p),
-                   "write the mesh again");
+        fail_input("a coordinate is not a finite number", "point " + std::to_string(p), "write the mesh again");
     }
   }
 
@@ -57,8 +60,7 @@ class BoundaryFinder {
     for (std::size_t i = 0; i < labels.size(); ++i) out_.labels[i].label = labels[i];
     const auto row_of = [&](Label l) -> std::int32_t {
       return l == 0 ? -1
-                    : static_cast<std::int32_t>(std::lower_bound(labels.begin(), labels.end(), l) -
-                                                labels.begin());
+                    : static_cast<std::int32_t>(std::lower_bound(labels.begin(), labels.end(), l) - labels.begin());
     };
     out_.row.assign(complex_.triangles.size(), {-1, -1});
     for (std::size_t t = 0; t < complex_.triangles.size(); ++t) {
@@ -124,8 +126,7 @@ class BoundaryFinder {
           const int sign = v[items[i].corner] == static_cast<std::int32_t>(low) ? 1 : -1;
           for (int s = 0; s < 2; ++s)
             if (const std::int32_t row = out_.row[items[i].triangle][s]; row >= 0)
-              group.push_back(
-                  {row, 2 * items[i].triangle + s, v[(items[i].corner + 2) % 3], s == 0 ? sign : -sign});
+              group.push_back({row, 2 * items[i].triangle + s, v[(items[i].corner + 2) % 3], s == 0 ? sign : -sign});
         }
         edge(static_cast<std::int32_t>(low), high, group);
       }
@@ -135,8 +136,7 @@ class BoundaryFinder {
 
   void edge(std::int32_t low, std::int32_t high, std::vector<EdgeSide>& group) {
     out_.edge_lengths_mm.push_back(norm(complex_.points[high] - complex_.points[low]));
-    std::stable_sort(group.begin(), group.end(),
-                     [](const EdgeSide& a, const EdgeSide& b) { return a.row < b.row; });
+    std::stable_sort(group.begin(), group.end(), [](const EdgeSide& a, const EdgeSide& b) { return a.row < b.row; });
     bool open = false, nonmanifold = false;
     edge_entries_ = out_.neighbours.size();
     for (std::size_t i = 0, j = 0; i < group.size(); i = j) {
@@ -145,7 +145,8 @@ class BoundaryFinder {
       LabelBoundary& label = out_.labels[group[i].row];
       ++label.edges;
       if (sum != 0) open = true, label.closed = false;
-      if (j - i > 2) nonmanifold = true, ++label.nonmanifold_edges, pair_across_solid(low, high, &group[i], &group[i] + (j - i));
+      if (j - i > 2)
+        nonmanifold = true, ++label.nonmanifold_edges, pair_across_solid(low, high, &group[i], &group[i] + (j - i));
       if (j - i == 2) join(low, high, group[i], group[i + 1]);
     }
     out_.nonmanifold_edges += nonmanifold;
@@ -161,8 +162,11 @@ class BoundaryFinder {
     const std::pair<std::int32_t, std::int32_t> triangles = std::minmax(a.side / 2, b.side / 2);
     bool first = true;
     for (std::size_t k = edge_entries_; k < out_.neighbours.size(); ++k)
-      if (std::pair<std::int32_t, std::int32_t>(std::minmax(out_.neighbours[k].side / 2, out_.neighbours[k].other / 2)) == triangles) first = false;
-    out_.neighbours.push_back({a.row, a.side, b.side, static_cast<std::int32_t>(out_.edge_lengths_mm.size()) - 1, first});
+      if (std::pair<std::int32_t, std::int32_t>(
+              std::minmax(out_.neighbours[k].side / 2, out_.neighbours[k].other / 2)) == triangles)
+        first = false;
+    out_.neighbours.push_back(
+        {a.row, a.side, b.side, static_cast<std::int32_t>(out_.edge_lengths_mm.size()) - 1, first});
   }
 
   std::int32_t corner(std::int32_t side, std::int32_t point) const {
@@ -249,7 +253,8 @@ class BoundaryFinder {
     for (std::size_t row = 0; row < out_.labels.size(); ++row) {
       out_.labels[row].volume_mm3 = static_cast<double>(volume[row]);
       out_.labels[row].area_mm2 = static_cast<double>(area[row]);
-      if (out_.labels[row].closed) out_.labels[row].genus = out_.labels[row].shells - (2 * fans[row] - out_.labels[row].triangles) / 4;
+      if (out_.labels[row].closed)
+        out_.labels[row].genus = out_.labels[row].shells - (2 * fans[row] - out_.labels[row].triangles) / 4;
     }
     for (std::size_t i = 0; i < piece_volume.size(); ++i) {
       out_.piece_volume_mm3.push_back(static_cast<double>(piece_volume[i]));

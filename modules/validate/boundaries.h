@@ -17,8 +17,8 @@ struct LabelBoundary {
   double volume_mm3 = 0, area_mm2 = 0;
   int outer_pieces = 0;  ///< pieces that enclose a positive volume
   int shells = 0;        ///< pieces, walls of cavities included
-  /// Handles of all shells together, by V - E + F of the boundary with edges and vertices where it merely touches itself
-  /// taken apart; 0 unless closed.
+  /// Handles of all shells together, by V - E + F of the boundary with edges and vertices where it merely touches
+  /// itself taken apart; 0 unless closed.
   long genus = 0;
 };
 
@@ -33,12 +33,10 @@ struct Neighbours {
 /// than two of a label meet at an edge, across the solid between them, so that parts that merely touch stay
 /// apart.
 struct Boundaries {
-  std::vector<LabelBoundary> labels;  ///< ascending by label
-  std::vector<std::array<std::int32_t, 2>>
-      row;  ///< per triangle: index into `labels` of below, above; -1: none
-  std::vector<std::array<std::int32_t, 2>>
-      piece;                             ///< per triangle: piece of its below and above side; -1: none
-  std::vector<double> piece_volume_mm3;  ///< signed: negative for the wall of a cavity
+  std::vector<LabelBoundary> labels;               ///< ascending by label
+  std::vector<std::array<std::int32_t, 2>> row;    ///< per triangle: index into `labels` of below, above; -1: none
+  std::vector<std::array<std::int32_t, 2>> piece;  ///< per triangle: piece of its below and above side; -1: none
+  std::vector<double> piece_volume_mm3;            ///< signed: negative for the wall of a cavity
   std::vector<std::int32_t> piece_row;
   std::size_t open_edges = 0, nonmanifold_edges = 0;
   std::vector<std::array<std::int32_t, 2>> open_edge_list;  ///< the first `limit`, ascending

@@ -30,8 +30,7 @@ std::uint64_t spread(std::uint64_t v) {
 
 void Box::add(const Vec3& p) {
   const double v[3] = {p.x, p.y, p.z};
-  for (int k = 0; k < 3; ++k)
-    low[k] = std::min(low[k], round_down(v[k])), high[k] = std::max(high[k], round_up(v[k]));
+  for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], round_down(v[k])), high[k] = std::max(high[k], round_up(v[k]));
 }
 
 BoxTree::BoxTree(const std::vector<Box>& boxes) {

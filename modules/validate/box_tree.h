@@ -23,8 +23,7 @@ struct Box {
   }
   /// Squared distance to p, 0 inside; infinite for an empty box.
   double distance2(const Vec3& p) const {
-    const double x = std::max({0.0, low[0] - p.x, p.x - high[0]}),
-                 y = std::max({0.0, low[1] - p.y, p.y - high[1]}),
+    const double x = std::max({0.0, low[0] - p.x, p.x - high[0]}), y = std::max({0.0, low[1] - p.y, p.y - high[1]}),
                  z = std::max({0.0, low[2] - p.z, p.z - high[2]});
     return x * x + y * y + z * z;
   }
@@ -42,8 +41,8 @@ class BoxTree {
   template <class Visit>
   void pairs_of_leaf(std::size_t leaf, Visit visit) const;
 
-  /// Calls visit(item, &reach) for items whose box the ray from + t * along, 0 <= t <= reach, may meet; visit may shorten
-  /// the reach. Boxes nearer along the ray come first, roughly.
+  /// Calls visit(item, &reach) for items whose box the ray from + t * along, 0 <= t <= reach, may meet; visit may
+  /// shorten the reach. Boxes nearer along the ray come first, roughly.
   template <class Visit>
   void along_ray(const Vec3& from, const Vec3& along, double reach, Visit visit) const;
 
@@ -141,8 +140,7 @@ std::int32_t BoxTree::nearest(const Vec3& p, std::int32_t hint, Distance2 distan
     const Entry e = stack[--top];
     if (!(e.d2 < bound)) continue;
     if (e.node >= width_) {
-      const std::size_t from = (e.node - width_) * kLeafItems,
-                        to = std::min(from + kLeafItems, items_.size());
+      const std::size_t from = (e.node - width_) * kLeafItems, to = std::min(from + kLeafItems, items_.size());
       for (std::size_t i = from; i < to; ++i) {
         if (!(boxes_[i].distance2(p) < bound)) continue;
         const double d2 = distance2(items_[i]);

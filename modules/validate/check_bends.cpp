@@ -60,7 +60,8 @@ BendCheck check_bends(const InterfaceComplex& complex, int threads) {
   }
   BendCheck check;
   check.surface = all.bends();
-  for (std::size_t row = 0; row < of_row.size(); ++row) check.labels.push_back({boundaries.labels[row].label, of_row[row].bends()});
+  for (std::size_t row = 0; row < of_row.size(); ++row)
+    check.labels.push_back({boundaries.labels[row].label, of_row[row].bends()});
   return check;
 }
 

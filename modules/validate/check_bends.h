@@ -6,8 +6,8 @@
 
 namespace stackmesh {
 
-/// How rough a surface is: the angles between the normals of triangles that continue each other across an edge. 0 is flat, 180
-/// a fold upon itself. NaN where there are no such edges.
+/// How rough a surface is: the angles between the normals of triangles that continue each other across an edge. 0 is
+/// flat, 180 a fold upon itself. NaN where there are no such edges.
 struct Bends {
   std::size_t edges = 0;
   double mean_deg = 0;        ///< weighted by the length of the edge
@@ -24,8 +24,9 @@ struct BendCheck {
   std::vector<LabelBends> labels;  ///< ascending, without 0
 };
 
-/// Measures the bends of each label's surface, and of all together. Where a label touches itself along an edge, the sides that
-/// bound the same solid are neighbours; triangles without area are left out. Does not depend on the number of threads (0: all).
+/// Measures the bends of each label's surface, and of all together. Where a label touches itself along an edge, the
+/// sides that bound the same solid are neighbours; triangles without area are left out. Does not depend on the number
+/// of threads (0: all).
 /// @throws Error(input) as check_surface does.
 BendCheck check_bends(const InterfaceComplex& complex, int threads = 0);
 

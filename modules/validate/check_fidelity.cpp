@@ -40,14 +40,15 @@ double triangle_distance2(const Vec3& p, const Corners& t) {
     const double height = dot(p - t.a, n);
     return height * height / area2;
   }
-  return std::min(
-      {segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
+  return std::min({segment_distance2(p, t.a, t.b), segment_distance2(p, t.b, t.c), segment_distance2(p, t.c, t.a)});
 }
 
-/// Distances from points to the nearest of some items; the points follow each other closely. None where there are no items.
+/// Distances from points to the nearest of some items; the points follow each other closely. None where there are no
+/// items.
 template <class Item, class Distance2>
 std::vector<double> distances_of(const std::vector<Vec3>& points, const std::vector<Item>& items,
-                                 const std::vector<Box>& boxes, int threads, Distance2 distance2, std::vector<std::int32_t>* nearest = nullptr) {
+                                 const std::vector<Box>& boxes, int threads, Distance2 distance2,
+                                 std::vector<std::int32_t>* nearest = nullptr) {
   std::vector<double> distances;
   if (points.empty() || items.empty()) return distances;
   const BoxTree tree(boxes);
@@ -69,8 +70,7 @@ std::vector<double> distances_of(const std::vector<Vec3>& points, const std::vec
 Distance distribution(std::vector<double> distances) {
   if (distances.empty()) return {kNaN, kNaN, kNaN};
   Distance d;
-  for (const double x : distances)
-    d.mean += x / static_cast<double>(distances.size()), d.max = std::max(d.max, x);
+  for (const double x : distances) d.mean += x / static_cast<double>(distances.size()), d.max = std::max(d.max, x);
   d.p95 = percentile(distances, 0.95);
   return d;
 }
@@ -111,8 +111,8 @@ std::vector<Vec3> sample_faces(const LabelRuns& runs, const std::vector<FaceStri
     if (s.axis == 2 && in_plane_only) continue;
     for (std::int32_t w = s.begin; w < s.end; ++w)
       if (all || hash(seed ^ hash(number++)) < threshold)
-        points.push_back(
-            runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0), s.v + (s.axis == 2 ? 0.5 * s.sign : 0)));
+        points.push_back(runs.place(w + (s.axis == 0 ? 0.5 * s.sign : 0), s.u + (s.axis == 1 ? 0.5 * s.sign : 0),
+                                    s.v + (s.axis == 2 ? 0.5 * s.sign : 0)));
   }
   return points;
 }
@@ -199,9 +199,10 @@ Vec3 to_world(const LabelRuns& runs, const Vec3& p) {
 }
 
 /// Middles and sizes of the components of the input, and pieces of the mesh, that nothing answers to.
-void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points, const Boundaries& boundaries,
-                      const std::vector<char>& component_lost, const std::vector<char>& piece_lost,
-                      const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
+void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
+                      const Boundaries& boundaries, const std::vector<char>& component_lost,
+                      const std::vector<char>& piece_lost, const std::vector<std::int32_t>& row_label,
+                      std::vector<LabelFidelity>& rows) {
   struct Extent {
     Vec3 sum, low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
     double weight = 0;
@@ -218,12 +219,14 @@ void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, co
     UnmatchedPart part;
     const Vec3 middle = (1 / e.weight) * e.sum;
     part.where = to_world(runs, middle);
-    part.section = static_cast<int>(std::clamp(std::lround(middle.z / runs.spacing_mm[2]), 0L, static_cast<long>(runs.size[2]) - 1));
+    part.section = static_cast<int>(
+        std::clamp(std::lround(middle.z / runs.spacing_mm[2]), 0L, static_cast<long>(runs.size[2]) - 1));
     part.size_mm = e.size();
     return part;
   };
   const auto keep = [](std::vector<UnmatchedPart>& parts) {
-    std::stable_sort(parts.begin(), parts.end(), [](const UnmatchedPart& a, const UnmatchedPart& b) { return a.volume_mm3 > b.volume_mm3; });
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const UnmatchedPart& a, const UnmatchedPart& b) { return a.volume_mm3 > b.volume_mm3; });
     if (parts.size() > kMost) parts.resize(kMost);
   };
   if (std::count(component_lost.begin(), component_lost.end(), 1) > 0) {
@@ -232,7 +235,8 @@ void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, co
       for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
         const LabelRun& r = runs.runs[k];
         if (!component_lost[r.component]) continue;
-        const double u = static_cast<double>(line % static_cast<std::size_t>(runs.size[1])), v = static_cast<double>(line / static_cast<std::size_t>(runs.size[1]));
+        const double u = static_cast<double>(line % static_cast<std::size_t>(runs.size[1])),
+                     v = static_cast<double>(line / static_cast<std::size_t>(runs.size[1]));
         Extent& e = extents[r.component];
         e.add(runs.place(0.5 * (r.begin + r.end - 1), u, v), r.end - r.begin);
         const double weight = e.weight;
@@ -264,37 +268,51 @@ void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, co
   for (LabelFidelity& row : rows) keep(row.missing), keep(row.unmatched);
 }
 
-/// Pieces that cover no voxel centre of their label, by the component to one of whose voxels their middle is nearest: (component,
-/// piece), each piece and each component once.
-std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
-                                                               const Boundaries& boundaries, const std::vector<std::int32_t>& row_label,
-                                                               const std::vector<char>& component_lost, const std::vector<char>& piece_lost) {
+/// Pieces that cover no voxel centre of their label, by the component to one of whose voxels their middle is nearest:
+/// (component, piece), each piece and each component once.
+std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& runs, const InterfaceComplex& complex,
+                                                               const std::vector<Vec3>& points,
+                                                               const Boundaries& boundaries,
+                                                               const std::vector<std::int32_t>& row_label,
+                                                               const std::vector<char>& component_lost,
+                                                               const std::vector<char>& piece_lost) {
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
-  if (std::count(component_lost.begin(), component_lost.end(), 1) == 0 || std::count(piece_lost.begin(), piece_lost.end(), 1) == 0) return pairs;
+  if (std::count(component_lost.begin(), component_lost.end(), 1) == 0 ||
+      std::count(piece_lost.begin(), piece_lost.end(), 1) == 0)
+    return pairs;
   std::vector<Vec3> sum(piece_lost.size());
   std::vector<double> corners(piece_lost.size(), 0);
   for (std::size_t t = 0; t < boundaries.piece.size(); ++t)
     for (const std::int32_t piece : boundaries.piece[t])
       if (piece >= 0 && piece_lost[piece])
         for (const std::int32_t v : complex.triangles[t].v) sum[piece] = sum[piece] + points[v], ++corners[piece];
-  // The nearest such voxel: of voxels that are thin along one axis, a piece may leave its own by less than half of their longest side.
+  // The nearest such voxel: of voxels that are thin along one axis, a piece may leave its own by less than half of
+  // their longest side.
   std::vector<char> taken(component_lost.size(), 0);
   const auto& s = runs.spacing_mm;
   const double reach = 0.5 * std::max({s[0], s[1], s[2]});
   for (std::size_t p = 0; p < piece_lost.size(); ++p) {
     if (!piece_lost[p] || corners[p] == 0) continue;
     const Vec3 m = (1 / corners[p]) * sum[p];
-    const auto beyond = [](double x, double begin, double end, double step) { return std::max({(begin - 0.5) * step - x, x - (end - 0.5) * step, 0.0}); };
+    const auto beyond = [](double x, double begin, double end, double step) {
+      return std::max({(begin - 0.5) * step - x, x - (end - 0.5) * step, 0.0});
+    };
     std::pair<double, std::int32_t> nearest = {reach, -1};
-    for (long v = std::max(0L, std::lround((m.z - reach) / s[2])); v <= std::min<long>(runs.size[2] - 1, std::lround((m.z + reach) / s[2])); ++v)
-      for (long u = std::max(0L, std::lround((m.y - reach) / s[1])); u <= std::min<long>(runs.size[1] - 1, std::lround((m.y + reach) / s[1])); ++u) {
-        const std::size_t line = static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
+    for (long v = std::max(0L, std::lround((m.z - reach) / s[2]));
+         v <= std::min<long>(runs.size[2] - 1, std::lround((m.z + reach) / s[2])); ++v)
+      for (long u = std::max(0L, std::lround((m.y - reach) / s[1]));
+           u <= std::min<long>(runs.size[1] - 1, std::lround((m.y + reach) / s[1])); ++u) {
+        const std::size_t line =
+            static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
         for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
           const LabelRun& r = runs.runs[k];
-          if (!component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]]) continue;
-          const double away = norm({beyond(m.x, r.begin, r.end, s[0]), beyond(m.y, static_cast<double>(u), static_cast<double>(u + 1), s[1]),
+          if (!component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]])
+            continue;
+          const double away = norm({beyond(m.x, r.begin, r.end, s[0]),
+                                    beyond(m.y, static_cast<double>(u), static_cast<double>(u + 1), s[1]),
                                     beyond(m.z, static_cast<double>(v), static_cast<double>(v + 1), s[2])});
-          if (away <= reach && (nearest.second < 0 || std::pair{away, r.component} < nearest)) nearest = {away, r.component};
+          if (away <= reach && (nearest.second < 0 || std::pair{away, r.component} < nearest))
+            nearest = {away, r.component};
         }
       }
     if (nearest.second < 0) continue;
@@ -305,16 +323,17 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& 
 }
 
 void match_components(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
-                      const Boundaries& boundaries, const GridWalk& walk,
-                      const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
-  std::vector<int> met_by_component(runs.component_label.size(), 0),
-      met_by_solid(boundaries.piece_row.size(), 0);
+                      const Boundaries& boundaries, const GridWalk& walk, const std::vector<std::int32_t>& row_label,
+                      std::vector<LabelFidelity>& rows) {
+  std::vector<int> met_by_component(runs.component_label.size(), 0), met_by_solid(boundaries.piece_row.size(), 0);
   for (const auto& [component, solid] : walk.meets) ++met_by_component[component], ++met_by_solid[solid];
   std::vector<char> component_lost(met_by_component.size(), 0), piece_lost(met_by_solid.size(), 0);
   for (std::size_t c = 0; c < met_by_component.size(); ++c) component_lost[c] = met_by_component[c] == 0;
   for (std::size_t p = 0; p < met_by_solid.size(); ++p)
-    piece_lost[p] = row_label[boundaries.piece_row[p]] >= 0 && boundaries.piece_volume_mm3[p] > 0 && met_by_solid[walk.solid[p]] == 0;
-  for (const auto& [component, piece] : find_shrunk(runs, complex, points, boundaries, row_label, component_lost, piece_lost)) {
+    piece_lost[p] = row_label[boundaries.piece_row[p]] >= 0 && boundaries.piece_volume_mm3[p] > 0 &&
+                    met_by_solid[walk.solid[p]] == 0;
+  for (const auto& [component, piece] :
+       find_shrunk(runs, complex, points, boundaries, row_label, component_lost, piece_lost)) {
     component_lost[component] = piece_lost[piece] = 0;
     ++met_by_component[component], ++met_by_solid[piece];
     ++rows[runs.component_label[component] - 1].shrunk_components;
@@ -370,7 +389,8 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
       row.mesh_voxels = walk.mesh[l];
       const std::size_t sum = walk.input[l] + walk.mesh[l];
       row.wrong_centres = sum - 2 * walk.both[l];
-      row.wrong_centres_share = walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
+      row.wrong_centres_share =
+          walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
       row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
     }
     match_components(runs, complex, points, boundaries, walk, row_label, rows);
@@ -381,7 +401,8 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
       row.middle = to_world(runs, runs.place(m.x, m.y, m.z));
       for (std::size_t l = 1; l < labels; ++l) {
         const std::size_t sum = walk.input[l] + walk.row_centres[r];
-        const double dice = sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
+        const double dice =
+            sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
         if (dice > row.best_dice) row.best_dice = dice, row.best_match = volume.labels[l].number;
       }
     }
@@ -394,7 +415,8 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
   const std::vector<std::vector<FaceStrip>> faces = find_faces(runs, labels, options.threads);
   const std::vector<std::vector<BandStrip>> bands = find_bands(runs, labels, options.threads);
   double wider[3] = {0, 0, 0};
-  for (int k = 0; options.band_mm && k < 3; ++k) wider[k] = std::max(0.0, 0.5 * ((*options.band_mm)[runs.axis[k]] - runs.spacing_mm[k]));
+  for (int k = 0; options.band_mm && k < 3; ++k)
+    wider[k] = std::max(0.0, 0.5 * ((*options.band_mm)[runs.axis[k]] - runs.spacing_mm[k]));
   const Vec3 wider_mm = {wider[0], wider[1], wider[2]};
   double rounding_mm = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) rounding_mm = std::min(rounding_mm, 1e-4 * (runs.spacing_mm[k] + 2 * wider[k]));
@@ -430,9 +452,11 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
     boxes = boxes_of(rectangles);
     const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
     row.reverse_distance_samples = from_surface.size();
-    row.reverse_distance_mm = distribution(distances_of(from_surface, rectangles, boxes, options.threads, rectangle_distance2));
+    row.reverse_distance_mm =
+        distribution(distances_of(from_surface, rectangles, boxes, options.threads, rectangle_distance2));
     const std::vector<Rectangle> band = boxes_of_band(runs, bands[l], wider_mm);
-    row.band_distance_mm = band_distance(distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
+    row.band_distance_mm = band_distance(
+        distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
   }
   return rows;
 }

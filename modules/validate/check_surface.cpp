@@ -19,8 +19,8 @@ SurfaceCheck check_surface(const InterfaceComplex& complex, const SurfaceCheckOp
   check.nonmanifold_edges = boundaries.nonmanifold_edges;
   check.open_edge_list = std::move(boundaries.open_edge_list);
   for (const LabelBoundary& b : boundaries.labels)
-    check.labels.push_back(
-        {b.label, b.closed, b.outer_pieces, b.vertices - b.edges + b.triangles, b.genus, b.volume_mm3, b.area_mm2, 180, b.nonmanifold_edges});
+    check.labels.push_back({b.label, b.closed, b.outer_pieces, b.vertices - b.edges + b.triangles, b.genus,
+                            b.volume_mm3, b.area_mm2, 180, b.nonmanifold_edges});
 
   SelfIntersections found = find_self_intersections(complex, options.threads, options.list_limit);
   check.self_intersections = found.count;

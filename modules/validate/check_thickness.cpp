@@ -49,7 +49,8 @@ std::vector<LabelThickness> check_thickness(const InterfaceComplex& complex, con
       const InterfaceTriangle& triangle = complex.triangles[t];
       const Label l = side == 0 ? triangle.below : triangle.above;
       if (l == 0 || triangle.below == triangle.above) continue;
-      of_label[std::lower_bound(labels.begin(), labels.end(), l) - labels.begin()].push_back(static_cast<std::int32_t>(2 * t) + side);
+      of_label[std::lower_bound(labels.begin(), labels.end(), l) - labels.begin()].push_back(
+          static_cast<std::int32_t>(2 * t) + side);
     }
   std::vector<LabelThickness> rows;
   for (std::size_t l = 0; l < labels.size(); ++l) {
@@ -84,7 +85,8 @@ std::vector<LabelThickness> check_thickness(const InterfaceComplex& complex, con
       if (s.area_mm2 == 0) continue;
       area += s.area_mm2;
       if (s.thickness_mm < options.elements * s.edge_mm) thin += s.area_mm2;
-      if (s.thickness_mm / s.edge_mm < least) least = s.thickness_mm / s.edge_mm, row.thinnest = s.where, row.thinnest_mm = s.thickness_mm;
+      if (s.thickness_mm / s.edge_mm < least)
+        least = s.thickness_mm / s.edge_mm, row.thinnest = s.where, row.thinnest_mm = s.thickness_mm;
     }
     if (area > 0) row.thin_share = thin / area;
     std::sort(seen.begin(), seen.end(), [](const Seen& x, const Seen& y) { return x.thickness_mm < y.thickness_mm; });

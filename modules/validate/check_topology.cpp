@@ -25,7 +25,8 @@ std::vector<std::int16_t> depths(const Mask& m) {
   std::vector<std::int16_t> depth(m.in.size(), -1);
   std::vector<std::int32_t> front = {0}, next;
   depth[0] = 0;
-  // From the outside in: a region takes over its depth, the regions beside it lie one deeper. Background joins over corners.
+  // From the outside in: a region takes over its depth, the regions beside it lie one deeper. Background joins over
+  // corners.
   while (!front.empty()) {
     next.clear();
     while (!front.empty()) {
@@ -71,7 +72,8 @@ int components(const std::vector<char>& in, int width, std::vector<std::int32_t>
   for (std::size_t p = 0; p < in.size(); ++p) {
     if (!in[p]) continue;
     if (p % width != 0 && in[p - 1]) sets.join(static_cast<std::int32_t>(p - 1), static_cast<std::int32_t>(p));
-    if (p >= static_cast<std::size_t>(width) && in[p - width]) sets.join(static_cast<std::int32_t>(p - width), static_cast<std::int32_t>(p));
+    if (p >= static_cast<std::size_t>(width) && in[p - width])
+      sets.join(static_cast<std::int32_t>(p - width), static_cast<std::int32_t>(p));
   }
   of.assign(in.size(), -1);
   int count = 0;
@@ -128,7 +130,8 @@ void imply(const std::vector<Mask>& slices, LabelTopology& out) {
           }
       }
       if (hollow) {  // a hollow that does not go on is open where no wall closes it
-        const auto open = [&](const std::vector<std::int32_t>& of, int n, const std::vector<char>& on, std::int32_t base, std::size_t other, bool exists) {
+        const auto open = [&](const std::vector<std::int32_t>& of, int n, const std::vector<char>& on,
+                              std::int32_t base, std::size_t other, bool exists) {
           std::vector<std::size_t> all(n, 0), bare(n, 0);
           for (std::size_t p = 0; p < of.size(); ++p)
             if (of[p] >= 0) {
@@ -152,8 +155,7 @@ void imply(const std::vector<Mask>& slices, LabelTopology& out) {
     out.implied_handles += edges - nodes + parts;
     if (hollow)
       for (const auto& [body, n] : open_of) out.implied_handles += std::max(0L, n - 1);
-    else
-      out.implied_pieces += static_cast<int>(parts);
+    else out.implied_pieces += static_cast<int>(parts);
   }
 }
 
@@ -172,13 +174,16 @@ Mask raster(const std::vector<Drawn>& edges, Label label, double x0, double y0, 
   for (const Drawn& e : edges) {
     if ((e.left == label) == (e.right == label) || e.ay == e.by) continue;
     const double low = std::min(e.ay, e.by), high = std::max(e.ay, e.by);
-    const int from = std::max(0, static_cast<int>(std::ceil((low - y0) / pixel))), to = std::min(height - 1, static_cast<int>(std::ceil((high - y0) / pixel)) - 1);
-    for (int y = from; y <= to; ++y) crossings[y].push_back(e.ax + (e.bx - e.ax) * (y0 + y * pixel - e.ay) / (e.by - e.ay));
+    const int from = std::max(0, static_cast<int>(std::ceil((low - y0) / pixel))),
+              to = std::min(height - 1, static_cast<int>(std::ceil((high - y0) / pixel)) - 1);
+    for (int y = from; y <= to; ++y)
+      crossings[y].push_back(e.ax + (e.bx - e.ax) * (y0 + y * pixel - e.ay) / (e.by - e.ay));
   }
   for (int y = 0; y < height; ++y) {
     std::sort(crossings[y].begin(), crossings[y].end());
     for (std::size_t i = 0; i + 1 < crossings[y].size(); i += 2) {
-      const int from = std::max(0, static_cast<int>(std::ceil((crossings[y][i] - x0) / pixel))), to = std::min(width - 1, static_cast<int>(std::floor((crossings[y][i + 1] - x0) / pixel)));
+      const int from = std::max(0, static_cast<int>(std::ceil((crossings[y][i] - x0) / pixel))),
+                to = std::min(width - 1, static_cast<int>(std::floor((crossings[y][i + 1] - x0) / pixel)));
       for (int x = from; x <= to; ++x) m.in[static_cast<std::size_t>(y) * width + x] = 1;
     }
   }
@@ -195,7 +200,8 @@ LabelTopology found(const LabelSurface& s) {
 
 }  // namespace
 
-std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const LabelVolume& volume, const TopologyOptions& o) {
+std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const LabelVolume& volume,
+                                          const TopologyOptions& o) {
   std::vector<LabelTopology> out;
   for (const LabelSurface& s : surface.labels)
     if (s.closed && s.genus > 0) out.push_back(found(s));
@@ -237,7 +243,8 @@ std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const Lab
         for (int x = 0; x + 2 < m.width; ++x) {
           std::array<int, 3> at{};
           at[o.axis] = k, at[u] = b.low[u] + x, at[v] = b.low[v] + y;
-          m.in[static_cast<std::size_t>(y + 1) * m.width + x + 1] = volume.voxels[volume.index(at[0], at[1], at[2])] == index;
+          m.in[static_cast<std::size_t>(y + 1) * m.width + x + 1] =
+              volume.voxels[volume.index(at[0], at[1], at[2])] == index;
         }
       slices.push_back(std::move(m));
     }
@@ -257,7 +264,8 @@ std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const Sta
     sections.emplace_back();
     for (const SectionEdge& e : s.edges) {
       const GridPoint a = s.points[e.a], b = s.points[e.b];
-      sections.back().push_back({a.x * stack.grid_x_mm, a.y * stack.grid_y_mm, b.x * stack.grid_x_mm, b.y * stack.grid_y_mm, e.left, e.right});
+      sections.back().push_back({a.x * stack.grid_x_mm, a.y * stack.grid_y_mm, b.x * stack.grid_x_mm,
+                                 b.y * stack.grid_y_mm, e.left, e.right});
       for (const GridPoint p : {a, b}) {
         x0 = std::min(x0, p.x * stack.grid_x_mm), x1 = std::max(x1, p.x * stack.grid_x_mm);
         y0 = std::min(y0, p.y * stack.grid_y_mm), y1 = std::max(y1, p.y * stack.grid_y_mm);
@@ -267,21 +275,24 @@ std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const Sta
   if (!(x1 > x0) || !(y1 > y0)) return {};
   const double pixel = 1.0001 * std::max(x1 - x0, y1 - y0) / kAcross;
   const int width = static_cast<int>((x1 - x0) / pixel) + 5, height = static_cast<int>((y1 - y0) / pixel) + 5;
-  if (static_cast<double>(width) * height * static_cast<double>(sections.size() * out.size()) > o.most_pixels) return {};
+  if (static_cast<double>(width) * height * static_cast<double>(sections.size() * out.size()) > o.most_pixels)
+    return {};
   parallel_for(out.size(), o.threads, [&](std::size_t n) {
     std::vector<Mask> slices;
-    for (const std::vector<Drawn>& edges : sections) slices.push_back(raster(edges, out[n].label, x0 - 1.53 * pixel, y0 - 1.53 * pixel, pixel, width, height));
+    for (const std::vector<Drawn>& edges : sections)
+      slices.push_back(raster(edges, out[n].label, x0 - 1.53 * pixel, y0 - 1.53 * pixel, pixel, width, height));
     imply(slices, out[n]);
   });
   return out;
 }
 
 std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, std::size_t most) {
-  // Tree and cotree [Eppstein 2003]: shortest ways to the vertices of a shell, then a tree of triangles that crosses none of
-  // them; each edge in neither closes a loop round a handle.
+  // Tree and cotree [Eppstein 2003]: shortest ways to the vertices of a shell, then a tree of triangles that crosses
+  // none of them; each edge in neither closes a loop round a handle.
   std::vector<std::int32_t> faces;
   for (std::size_t t = 0; t < c.triangles.size(); ++t)
-    if ((c.triangles[t].below == label) != (c.triangles[t].above == label)) faces.push_back(static_cast<std::int32_t>(t));
+    if ((c.triangles[t].below == label) != (c.triangles[t].above == label))
+      faces.push_back(static_cast<std::int32_t>(t));
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> edges;
   std::map<std::int32_t, std::vector<std::int32_t>> beside;
   for (std::int32_t t : faces)
@@ -294,7 +305,8 @@ std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, st
   std::map<std::int32_t, std::pair<double, std::int32_t>> way;  // length and the vertex before
   for (const auto& start : beside) {
     if (way.count(start.first)) continue;
-    std::priority_queue<std::pair<double, std::int32_t>, std::vector<std::pair<double, std::int32_t>>, std::greater<>> queue;
+    std::priority_queue<std::pair<double, std::int32_t>, std::vector<std::pair<double, std::int32_t>>, std::greater<>>
+        queue;
     queue.push({0, start.first});
     way[start.first] = {0, -1};
     while (!queue.empty()) {
@@ -310,15 +322,19 @@ std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, st
       }
     }
   }
-  const auto in_tree = [&](const std::pair<std::int32_t, std::int32_t>& e) { return way[e.first].second == e.second || way[e.second].second == e.first; };
-  // The longest loops leave first: a spanning forest of triangles over the edges in falling order of the loop they would close.
+  const auto in_tree = [&](const std::pair<std::int32_t, std::int32_t>& e) {
+    return way[e.first].second == e.second || way[e.second].second == e.first;
+  };
+  // The longest loops leave first: a spanning forest of triangles over the edges in falling order of the loop they
+  // would close.
   struct Loop {
     double length;
     std::pair<std::int32_t, std::int32_t> edge;
   };
   std::vector<Loop> loops;
   for (const auto& [e, sides] : edges)
-    if (!in_tree(e)) loops.push_back({way[e.first].first + way[e.second].first + norm(c.points[e.first] - c.points[e.second]), e});
+    if (!in_tree(e))
+      loops.push_back({way[e.first].first + way[e.second].first + norm(c.points[e.first] - c.points[e.second]), e});
   std::stable_sort(loops.begin(), loops.end(), [](const Loop& a, const Loop& b) { return a.length > b.length; });
   DisjointSets joined(c.triangles.size());
   std::vector<Loop> left;
@@ -346,11 +362,13 @@ std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, st
     p.triangles = edges[l.edge];
     places.push_back(std::move(p));
   }
-  std::stable_sort(places.begin(), places.end(), [](const HandlePlace& a, const HandlePlace& b) { return a.size_mm < b.size_mm; });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const HandlePlace& a, const HandlePlace& b) { return a.size_mm < b.size_mm; });
   std::vector<HandlePlace> out;  // the loop round a tunnel and the one through it lie at one place
   for (HandlePlace& p : places) {
     if (out.size() == most) break;
-    const bool same = std::any_of(out.begin(), out.end(), [&](const HandlePlace& q) { return norm(q.where - p.where) < 0.5 * q.size_mm; });
+    const bool same = std::any_of(out.begin(), out.end(),
+                                  [&](const HandlePlace& q) { return norm(q.where - p.where) < 0.5 * q.size_mm; });
     if (!same) out.push_back(std::move(p));
   }
   return out;

@@ -13,29 +13,34 @@ namespace stackmesh {
 /// What the slices say of a label's topology, and what its surface has.
 struct LabelTopology {
   Label label = 0;
-  long handles = 0, implied_handles = 0;  ///< tunnels and loops; implied: at most so many, if parts go on where they overlap
+  /// tunnels and loops; implied: at most so many, if parts go on where they overlap
+  long handles = 0, implied_handles = 0;
   int pieces = 0, implied_pieces = 0;
   long surplus() const { return handles > implied_handles ? handles - implied_handles : 0; }
 };
 
 struct TopologyOptions {
-  int axis = 2;     ///< along which a volume's slices are stacked
-  int threads = 0;  ///< 0: all
+  int axis = 2;              ///< along which a volume's slices are stacked
+  int threads = 0;           ///< 0: all
   double most_pixels = 6e8;  ///< of all slices and labels; more are not looked at
 };
 
-/// For each label whose surface has handles: how many the label's slices imply. In a slice a label is a nest of outlines; what
-/// lies inside an outline in one slice is taken to go on in the next one where it overlaps it, solid and hollow alike. A
-/// hollow that opens at n places is n - 1 tunnels. So no tunnel counts that no slice has. Empty if there is too much to look at.
-std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const LabelVolume& volume, const TopologyOptions& options = {});
+/// For each label whose surface has handles: how many the label's slices imply. In a slice a label is a nest of
+/// outlines; what lies inside an outline in one slice is taken to go on in the next one where it overlaps it, solid and
+/// hollow alike. A hollow that opens at n places is n - 1 tunnels. So no tunnel counts that no slice has. Empty if
+/// there is too much to look at.
+std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const LabelVolume& volume,
+                                          const TopologyOptions& options = {});
 
-/// The same for drawn sections (interpolated ones do not count); all labels, since more pieces than drawn count as well.
-std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const Stack& sections, const TopologyOptions& options = {});
+/// The same for drawn sections (interpolated ones do not count); all labels, since more pieces than drawn count as
+/// well.
+std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const Stack& sections,
+                                          const TopologyOptions& options = {});
 
 /// A closed way round a handle.
 struct HandlePlace {
-  Vec3 where;            ///< mm, the middle of the loop
-  double size_mm = 0;    ///< largest extent of the loop's box
+  Vec3 where;                           ///< mm, the middle of the loop
+  double size_mm = 0;                   ///< largest extent of the loop's box
   std::vector<std::int32_t> triangles;  ///< along it
 };
 

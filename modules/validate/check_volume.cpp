@@ -18,37 +18,36 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_input(const TetMesh& mesh) {
-  const auto fine = [n = static_cast<std::int64_t>(mesh.points.size())](std::int32_t v) {
-    return v >= 0 && v < n;
-  };
+  const auto fine = [n = static_cast<std::int64_t>(mesh.points.size())](std::int32_t v) { return v >= 0 && v < n; };
   if (mesh.labels.size() != mesh.elements())
-    fail_input(
-        std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.elements()) + (mesh.wedges.empty() ? " tets" : " elements"),
-        "tetrahedral mesh", "write the mesh again");
+    fail_input(std::to_string(mesh.labels.size()) + " labels for " + std::to_string(mesh.elements()) +
+                   (mesh.wedges.empty() ? " tets" : " elements"),
+               "tetrahedral mesh", "write the mesh again");
   for (std::size_t t = mesh.tets.size(); t < mesh.elements(); ++t)
     each_node(mesh, t, [&](std::int32_t v) {
-      if (!fine(v)) fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
+      if (!fine(v))
+        fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
     });
   const bool all = mesh.wedge_mid.size() == mesh.wedges.size(), none = mesh.wedge_mid.empty();
   if (!(all || none) || (!mesh.tets.empty() && !mesh.wedges.empty() && mesh.mid.empty() != none))
-    fail_input("mid-side nodes for " + std::to_string(mesh.wedge_mid.size()) + " of " + std::to_string(mesh.wedges.size()) + " wedges", "tetrahedral mesh", "write the mesh again");
+    fail_input("mid-side nodes for " + std::to_string(mesh.wedge_mid.size()) + " of " +
+                   std::to_string(mesh.wedges.size()) + " wedges",
+               "tetrahedral mesh", "write the mesh again");
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (!std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), fine))
-      fail_input("a tet names a point that does not exist", "tet " + std::to_string(t),
-                 "write the mesh again");
+      fail_input("a tet names a point that does not exist", "tet " + std::to_string(t), "write the mesh again");
   if (!mesh.mid.empty() && mesh.mid.size() != mesh.tets.size())
-    fail_input("mid-side nodes for " + std::to_string(mesh.mid.size()) + " of " + std::to_string(mesh.tets.size()) + " tets",
-               "tetrahedral mesh", "write the mesh again");
+    fail_input(
+        "mid-side nodes for " + std::to_string(mesh.mid.size()) + " of " + std::to_string(mesh.tets.size()) + " tets",
+        "tetrahedral mesh", "write the mesh again");
   for (std::size_t t = 0; t < mesh.mid.size(); ++t)
     if (!std::all_of(mesh.mid[t].begin(), mesh.mid[t].end(), fine))
       fail_input("a mid-side node does not exist", "tet " + std::to_string(t), "write the mesh again");
   for (std::size_t t = 0; t < mesh.faces.size(); ++t)
     if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
-      fail_input("a face names a point that does not exist", "face " + std::to_string(t),
-                 "write the mesh again");
+      fail_input("a face names a point that does not exist", "face " + std::to_string(t), "write the mesh again");
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
-    if (!std::isfinite(mesh.points[p].x) || !std::isfinite(mesh.points[p].y) ||
-        !std::isfinite(mesh.points[p].z))
+    if (!std::isfinite(mesh.points[p].x) || !std::isfinite(mesh.points[p].y) || !std::isfinite(mesh.points[p].z))
       fail_input("a coordinate is not a finite number", "point " + std::to_string(p), "write the mesh again");
 }
 
@@ -60,9 +59,9 @@ struct Shape {
 
 /// Edge between faces i and j of a tet: the two corners that both have.
 constexpr std::int8_t kEdgeOfFaces[4][4][2] = {{{0, 0}, {2, 3}, {1, 3}, {1, 2}},
-                                              {{2, 3}, {0, 0}, {0, 3}, {0, 2}},
-                                              {{1, 3}, {0, 3}, {0, 0}, {0, 1}},
-                                              {{1, 2}, {0, 2}, {0, 1}, {0, 0}}};
+                                               {{2, 3}, {0, 0}, {0, 3}, {0, 2}},
+                                               {{1, 3}, {0, 3}, {0, 0}, {0, 1}},
+                                               {{1, 2}, {0, 2}, {0, 1}, {0, 0}}};
 
 Shape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = c - a, w = d - a, e = c - b, f = d - b, g = d - c;
@@ -143,8 +142,8 @@ void judge_curved(const TetMesh& mesh, std::size_t t, Shape& shape, char& invert
   inverted = inverted || !(least > 0);
 }
 
-/// Tets below 10 degrees whose sharp edge is one of the surface, where the tets between the two surface triangles next to
-/// them span less than 10 degrees together.
+/// Tets below 10 degrees whose sharp edge is one of the surface, where the tets between the two surface triangles next
+/// to them span less than 10 degrees together.
 std::size_t count_in_narrow_wedges(const TetMesh& mesh, const std::vector<Shape>& shapes) {
   using Edge = std::array<std::int32_t, 2>;
   using Triangle = std::array<std::int32_t, 3>;
@@ -175,8 +174,10 @@ std::size_t count_in_narrow_wedges(const TetMesh& mesh, const std::vector<Shape>
         int m = 0;
         while (m == i || m == j) ++m;
         const Vec3 axis = mesh.points[v[j]] - mesh.points[v[i]];
-        const Vec3 a = cross(axis, mesh.points[v[m]] - mesh.points[v[i]]), b = cross(axis, mesh.points[v[k - m]] - mesh.points[v[i]]);
-        at->second.push_back({t, {v[m], v[k - m]}, kDegrees * std::atan2(norm(cross(a, b)), dot(a, b)), at->second.size()});
+        const Vec3 a = cross(axis, mesh.points[v[m]] - mesh.points[v[i]]),
+                   b = cross(axis, mesh.points[v[k - m]] - mesh.points[v[i]]);
+        at->second.push_back(
+            {t, {v[m], v[k - m]}, kDegrees * std::atan2(norm(cross(a, b)), dot(a, b)), at->second.size()});
       }
   std::set<Triangle> walls;
   for (const InterfaceTriangle& f : mesh.faces)
@@ -197,7 +198,8 @@ std::size_t count_in_narrow_wedges(const TetMesh& mesh, const std::vector<Shape>
       for (std::size_t j = 0; j < i; ++j)
         for (const std::int32_t w : around[i].wing)
           if ((w == around[j].wing[0] || w == around[j].wing[1]) && !wall(w)) {
-            const std::size_t from = std::max(around[i].group, around[j].group), to = std::min(around[i].group, around[j].group);
+            const std::size_t from = std::max(around[i].group, around[j].group),
+                              to = std::min(around[i].group, around[j].group);
             for (Around& a : around)
               if (a.group == from) a.group = to;
           }
@@ -242,7 +244,8 @@ std::size_t count_pinched(const TetMesh& mesh, const std::vector<Shape>& shapes)
     std::array<std::int32_t, 3> face = {v[(apex + 1) & 3], v[(apex + 2) & 3], v[(apex + 3) & 3]};
     std::sort(face.begin(), face.end());
     if (walls.count(face) == 0) return false;
-    const Vec3 &a = mesh.points[face[0]], &b = mesh.points[face[1]], &c = mesh.points[face[2]], &p = mesh.points[v[apex]];
+    const Vec3 &a = mesh.points[face[0]], &b = mesh.points[face[1]], &c = mesh.points[face[2]],
+               &p = mesh.points[v[apex]];
     const Vec3 n = cross(b - a, c - a);
     return dot(cross(b - a, p - a), n) > 0 && dot(cross(c - b, p - b), n) > 0 && dot(cross(a - c, p - c), n) > 0;
   };
@@ -268,8 +271,7 @@ void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& c
   parallel_for((shapes.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
     for (std::size_t t = chunk * kChunk; t < std::min(shapes.size(), (chunk + 1) * kChunk); ++t) {
       const auto& v = mesh.tets[t];
-      const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]],
-                 &d = mesh.points[v[3]];
+      const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]], &d = mesh.points[v[3]];
       shapes[t] = shape_of(a, b, c, d);
       inverted[t] = exact_orientation(a, b, c, d) <= 0;
       if (!mesh.mid.empty()) judge_curved(mesh, t, shapes[t], inverted[t]);
@@ -295,8 +297,7 @@ void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& c
     check.dihedral_below_10 += s.dihedral_min_deg < 10;
     check.dihedral_max_deg = std::max(check.dihedral_max_deg, s.dihedral_max_deg);
     check.radius_edge_max = std::max(check.radius_edge_max, s.radius_edge);
-    check.scaled_jacobian_min =
-        t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
+    check.scaled_jacobian_min = t == 0 ? s.scaled_jacobian : std::min(check.scaled_jacobian_min, s.scaled_jacobian);
   }
   for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
     const WedgeShape shape = wedge_shape(mesh, w);
@@ -306,8 +307,10 @@ void measure(const TetMesh& mesh, int threads, std::size_t limit, VolumeCheck& c
     label.volume_mm3 += shape.volume_mm3;
     ++(is_pyramid(mesh.wedges[w]) ? check.pyramids : check.wedges);
     check.inverted += shape.inverted;
-    if (shape.inverted && check.inverted_list.size() < limit) check.inverted_list.push_back(static_cast<std::int32_t>(element));
-    check.wedge_scaled_jacobian_min = w == 0 ? shape.scaled_jacobian : std::min(check.wedge_scaled_jacobian_min, shape.scaled_jacobian);
+    if (shape.inverted && check.inverted_list.size() < limit)
+      check.inverted_list.push_back(static_cast<std::int32_t>(element));
+    check.wedge_scaled_jacobian_min =
+        w == 0 ? shape.scaled_jacobian : std::min(check.wedge_scaled_jacobian_min, shape.scaled_jacobian);
   }
   check.pinched = count_pinched(mesh, shapes);
   check.in_narrow_wedges = count_in_narrow_wedges(mesh, shapes);
@@ -356,7 +359,8 @@ class ConformityCheck {
           }
           if (conforming(&faces[i], &faces[i] + (j - i))) continue;
           ++found[chunk].count;
-          if (found[chunk].list.size() < limit_) found[chunk].list.push_back({static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
+          if (found[chunk].list.size() < limit_)
+            found[chunk].list.push_back({static_cast<std::int32_t>(low), faces[i].middle, faces[i].high});
         }
       }
     });
@@ -425,7 +429,9 @@ class ConformityCheck {
 std::size_t count_unshared_edges(const TetMesh& mesh) {
   struct Edge {
     std::int32_t low, high, mid;
-    bool operator<(const Edge& o) const { return low != o.low ? low < o.low : high != o.high ? high < o.high : mid < o.mid; }
+    bool operator<(const Edge& o) const {
+      return low != o.low ? low < o.low : high != o.high ? high < o.high : mid < o.mid;
+    }
     bool operator==(const Edge& o) const { return low == o.low && high == o.high && mid == o.mid; }
   };
   static constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};

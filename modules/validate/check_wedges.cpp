@@ -9,7 +9,8 @@
 namespace stackmesh {
 namespace {
 
-/// A place in a wedge: u and v are the coordinates of corners 1 and 2 in the triangle, w runs from -1 (corners 0 1 2) to 1.
+/// A place in a wedge: u and v are the coordinates of corners 1 and 2 in the triangle, w runs from -1 (corners 0 1 2)
+/// to 1.
 struct Place {
   double u, v, w, weight;
 };
@@ -41,7 +42,8 @@ std::array<Vec3, 3> derivatives(const std::vector<Vec3>& node, const Place& p) {
     const int m = (k + 1) % 3;
     for (const int top : {0, 1}) {  // N = 2 l m z
       const double s = top ? 1 : -1, z = 1 + s * p.w;
-      add(6 + k + 3 * top, 2 * z * (du[k] * l[m] + l[k] * du[m]), 2 * z * (dv[k] * l[m] + l[k] * dv[m]), 2 * s * l[k] * l[m]);
+      add(6 + k + 3 * top, 2 * z * (du[k] * l[m] + l[k] * du[m]), 2 * z * (dv[k] * l[m] + l[k] * dv[m]),
+          2 * s * l[k] * l[m]);
     }
     const double bubble = 1 - p.w * p.w;  // N = l (1 - w^2)
     add(12 + k, bubble * du[k], bubble * dv[k], -2 * p.w * l[k]);
@@ -77,7 +79,9 @@ const std::vector<Place>& integration_points(bool quadratic) {
       {{1.0 / 3, 1.0 / 3, -0.5773502691896257, 0}, {1.0 / 3, 1.0 / 3, 0.5773502691896257, 0}}, [] {
         std::vector<Place> out;
         for (const double w : {-0.7745966692414834, 0.0, 0.7745966692414834})
-          for (const auto& [u, v] : {std::pair(1.0 / 6, 1.0 / 6), std::pair(2.0 / 3, 1.0 / 6), std::pair(1.0 / 6, 2.0 / 3)}) out.push_back({u, v, w, 0});
+          for (const auto& [u, v] :
+               {std::pair(1.0 / 6, 1.0 / 6), std::pair(2.0 / 3, 1.0 / 6), std::pair(1.0 / 6, 2.0 / 3)})
+            out.push_back({u, v, w, 0});
         return out;
       }()};
   return rules[quadratic ? 1 : 0];
@@ -90,7 +94,9 @@ std::vector<Place> node_places(bool pyramid) {
   for (const double w : {-1.0, 0.0, 1.0})
     for (int k = 0; k < (pyramid ? 2 : 3); ++k) out.push_back({corner[k][0], corner[k][1], w, 0});
   for (const double w : {-1.0, 1.0})
-    for (int k = 0; k < 3; ++k) out.push_back({0.5 * (corner[k][0] + corner[(k + 1) % 3][0]), 0.5 * (corner[k][1] + corner[(k + 1) % 3][1]), w, 0});
+    for (int k = 0; k < 3; ++k)
+      out.push_back(
+          {0.5 * (corner[k][0] + corner[(k + 1) % 3][0]), 0.5 * (corner[k][1] + corner[(k + 1) % 3][1]), w, 0});
   return out;
 }
 
@@ -116,14 +122,17 @@ WedgeShape wedge_shape(const TetMesh& mesh, std::size_t wedge) {
   WedgeShape out;
   out.scaled_jacobian = std::numeric_limits<double>::infinity();
   // A corner, the next two of its triangle, and the one over or under it.
-  static constexpr int kCorner[6][4] = {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}};
+  static constexpr int kCorner[6][4] = {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5},
+                                        {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}};
   const double regular = pyramid ? std::sqrt(2.0) : 2 / std::sqrt(3.0);
   for (const auto& c : kCorner) {
     if (pyramid && (c[0] == 2 || c[0] == 5)) continue;
-    const Vec3 &a = mesh.points[w[c[0]]], &b = mesh.points[w[c[1]]], &d = mesh.points[w[c[2]]], &e = mesh.points[w[c[3]]];
+    const Vec3 &a = mesh.points[w[c[0]]], &b = mesh.points[w[c[1]]], &d = mesh.points[w[c[2]]],
+               &e = mesh.points[w[c[3]]];
     out.inverted = out.inverted || exact_orientation(a, b, d, e) <= 0;
     const double product = norm(b - a) * norm(d - a) * norm(e - a);
-    out.scaled_jacobian = std::min(out.scaled_jacobian, product > 0 ? regular * dot(b - a, cross(d - a, e - a)) / product : 0);
+    out.scaled_jacobian =
+        std::min(out.scaled_jacobian, product > 0 ? regular * dot(b - a, cross(d - a, e - a)) / product : 0);
   }
   std::vector<Vec3> node, straight;
   for (const std::int32_t v : w) node.push_back(mesh.points[v]);

@@ -9,10 +9,13 @@ namespace stackmesh {
 
 /// What one wedge, or pyramid, is like.
 struct WedgeShape {
-  double scaled_jacobian = 0;  ///< smallest over its corners: determinant over the product of the three edges, 1 for the regular one; of second
-                               ///< order times the smallest determinant over that of the straight element there
-  double volume_mm3 = 0;       ///< within its curved sides
-  bool inverted = false;       ///< a corner's exact orientation, or the determinant at an integration point (of second order at every node, too), is not positive
+  /// smallest over its corners: determinant over the product of the three edges, 1 for the regular one; of second
+  double scaled_jacobian = 0;
+  ///< order times the smallest determinant over that of the straight element there
+  double volume_mm3 = 0;  ///< within its curved sides
+  /// a corner's exact orientation, or the determinant at an integration point (of second order at every node, too), is
+  /// not positive
+  bool inverted = false;
 };
 
 /// @param wedge in mesh.wedges
@@ -28,7 +31,8 @@ void each_wedge_triangle(const std::array<std::int32_t, 6>& w, Visit visit) {
   visit(std::array<std::int32_t, 3>{w[2], w[0], w[3]});
 }
 
-/// The sides of four corners that are not shared by exactly two wedges or pyramids of one label, one on either side: ascending corners.
+/// The sides of four corners that are not shared by exactly two wedges or pyramids of one label, one on either side:
+/// ascending corners.
 std::vector<std::array<std::int32_t, 4>> unshared_sides(const TetMesh& mesh);
 
 }  // namespace stackmesh

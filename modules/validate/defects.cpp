@@ -23,7 +23,9 @@ std::string place_of(const Vec3& p) {
   return text;
 }
 
-std::string counted(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
 
 std::string measured(const char* format, double value) {
   char text[64];
@@ -44,8 +46,8 @@ struct Extent {
 
 class DefectFinder {
  public:
-  DefectFinder(const InterfaceComplex& complex, const SurfaceCheck& surface, const TetMesh* mesh, const VolumeCheck* volume,
-               const std::vector<LabelFidelity>* fidelity, const DefectOptions& options)
+  DefectFinder(const InterfaceComplex& complex, const SurfaceCheck& surface, const TetMesh* mesh,
+               const VolumeCheck* volume, const std::vector<LabelFidelity>* fidelity, const DefectOptions& options)
       : complex_(complex), surface_(surface), mesh_(mesh), volume_(volume), fidelity_(fidelity), o_(options) {}
 
   std::vector<Defect> run() {
@@ -61,7 +63,9 @@ class DefectFinder {
  private:
   /// Keeps the largest of one kind.
   void keep(std::vector<Defect>& found, std::size_t total) {
-    std::stable_sort(found.begin(), found.end(), [](const Defect& a, const Defect& b) { return a.count != b.count ? a.count > b.count : a.size_mm > b.size_mm; });
+    std::stable_sort(found.begin(), found.end(), [](const Defect& a, const Defect& b) {
+      return a.count != b.count ? a.count > b.count : a.size_mm > b.size_mm;
+    });
     cut(found, total);
   }
   void cut(std::vector<Defect>& found, std::size_t total) {
@@ -70,7 +74,8 @@ class DefectFinder {
       if (d.entities.size() > kMostEntities) d.entities.resize(kMostEntities);
       if (o_.section_of && !d.section) d.section = o_.section_of(d.where);
     }
-    if (!found.empty() && total > found.size()) found.back().text += " (" + std::to_string(total - found.size()) + " more of this kind)";
+    if (!found.empty() && total > found.size())
+      found.back().text += " (" + std::to_string(total - found.size()) + " more of this kind)";
     all_.insert(all_.end(), found.begin(), found.end());
   }
 
@@ -101,7 +106,8 @@ class DefectFinder {
       d.label = triangle.below != 0 ? triangle.below : triangle.above;
       Extent e;
       for (const std::int32_t v : triangle.v) e.add(complex_.points[v]);
-      d.where = (1.0 / 3) * (complex_.points[triangle.v[0]] + complex_.points[triangle.v[1]] + complex_.points[triangle.v[2]]);
+      d.where = (1.0 / 3) *
+                (complex_.points[triangle.v[0]] + complex_.points[triangle.v[1]] + complex_.points[triangle.v[2]]);
       d.size_mm = e.size();
       d.entity_kind = "triangles";
       d.entities = {t};
@@ -135,16 +141,20 @@ class DefectFinder {
         for (const std::int32_t p : e) extent.add(complex_.points[p]), ++degree[p];
         single = single && triangles_at[e].size() == 1;
       }
-      const bool ring = single && std::all_of(degree.begin(), degree.end(), [](const auto& p) { return p.second == 2; });
-      const InterfaceTriangle* beside = triangles_at[loop[0]].empty() ? nullptr : &complex_.triangles[triangles_at[loop[0]][0]];
+      const bool ring =
+          single && std::all_of(degree.begin(), degree.end(), [](const auto& p) { return p.second == 2; });
+      const InterfaceTriangle* beside =
+          triangles_at[loop[0]].empty() ? nullptr : &complex_.triangles[triangles_at[loop[0]][0]];
       if (beside) d.label = beside->below != 0 ? beside->below : beside->above;
       d.kind = ring ? "hole" : "open_edge";
-      for (const auto& p : degree) d.where = d.where + (1.0 / static_cast<double>(degree.size())) * complex_.points[p.first];
+      for (const auto& p : degree)
+        d.where = d.where + (1.0 / static_cast<double>(degree.size())) * complex_.points[p.first];
       d.size_mm = extent.size();
       d.count = loop.size();
       d.entity_kind = "points";
       for (const auto& p : degree) d.entities.push_back(p.first);
-      d.text = (ring ? "a hole of " + counted(loop.size(), "edge", "edges") : counted(loop.size(), "edge", "edges") + " where the surface does not close") +
+      d.text = (ring ? "a hole of " + counted(loop.size(), "edge", "edges")
+                     : counted(loop.size(), "edge", "edges") + " where the surface does not close") +
                measured(", %.2f mm wide, ", d.size_mm) + place_of(d.where);
       holes.push_back(std::move(d));
     }
@@ -184,8 +194,10 @@ class DefectFinder {
       std::vector<std::int64_t> ids(triangles.begin(), triangles.end());  // pairs, one after the other
       Defect d = of_triangles("self_intersection", ids);
       d.count = count[root];
-      d.text = d.count == 1 ? "triangles " + std::to_string(ids[0]) + " and " + std::to_string(ids[1]) + " cross " + place_of(d.where)
-                            : std::to_string(d.count) + " pairs of triangles cross" + measured(" over %.2f mm ", d.size_mm) + place_of(d.where);
+      d.text = d.count == 1 ? "triangles " + std::to_string(ids[0]) + " and " + std::to_string(ids[1]) + " cross " +
+                                  place_of(d.where)
+                            : std::to_string(d.count) + " pairs of triangles cross" +
+                                  measured(" over %.2f mm ", d.size_mm) + place_of(d.where);
       places.push_back(std::move(d));
     }
     const std::size_t total = places.size(), total_flat = flat.size();
@@ -229,7 +241,8 @@ class DefectFinder {
     for (const std::int32_t t : volume_->inverted_list) {
       if (mesh_->is_wedge(static_cast<std::size_t>(t))) {
         Defect d = of_tet("inverted_tet", static_cast<std::size_t>(t));
-        d.text = "wedge " + std::to_string(t - static_cast<std::int64_t>(mesh_->tets.size())) + " is inverted " + place_of(d.where);
+        d.text = "wedge " + std::to_string(t - static_cast<std::int64_t>(mesh_->tets.size())) + " is inverted " +
+                 place_of(d.where);
         found.push_back(std::move(d));
         continue;
       }
@@ -237,7 +250,11 @@ class DefectFinder {
       const auto& p = mesh_->points;
       const int sign = exact_orientation(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
       Defect d = of_tet("inverted_tet", static_cast<std::size_t>(t));
-      d.text = "tet " + std::to_string(t) + (sign == 0 ? " is flat " : sign < 0 ? " is inverted " : " is turned inside out by its mid-side nodes ") + place_of(d.where);
+      d.text = "tet " + std::to_string(t) +
+               (sign == 0  ? " is flat "
+                : sign < 0 ? " is inverted "
+                           : " is turned inside out by its mid-side nodes ") +
+               place_of(d.where);
       found.push_back(std::move(d));
     }
     keep(found, volume_->inverted);
@@ -271,7 +288,8 @@ class DefectFinder {
         d.where = part.where, d.size_mm = part.size_mm, d.section = part.section;
         d.count = part.voxels;
         d.entity_kind = "voxels";
-        d.text = "a component of label " + std::to_string(f.label) + " with " + counted(part.voxels, "voxel", "voxels") + measured(" (%.1f mm3) is missing ", part.volume_mm3) +
+        d.text = "a component of label " + std::to_string(f.label) + " with " +
+                 counted(part.voxels, "voxel", "voxels") + measured(" (%.1f mm3) is missing ", part.volume_mm3) +
                  place_of(part.where);
         missing.push_back(std::move(d));
       }
@@ -280,7 +298,9 @@ class DefectFinder {
         d.kind = "unmatched_piece";
         d.label = f.label;
         d.where = part.where, d.size_mm = part.size_mm, d.section = part.section;
-        d.text = "a piece of label " + std::to_string(f.label) + measured(" (%.2f mm3) that no voxel centre of the label lies in ", part.volume_mm3) + place_of(part.where);
+        d.text = "a piece of label " + std::to_string(f.label) +
+                 measured(" (%.2f mm3) that no voxel centre of the label lies in ", part.volume_mm3) +
+                 place_of(part.where);
         extra.push_back(std::move(d));
       }
     }
@@ -300,8 +320,9 @@ class DefectFinder {
       d.where = f.middle;
       d.count = f.mesh_voxels;
       d.entity_kind = "voxels";
-      d.text = "label " + std::to_string(f.label) + " of the mesh lies where label " + std::to_string(f.best_match) + " of the slices is" +
-               measured(" (Dice %.3f", f.best_dice) + measured("; with its own %.3f) ", own) + place_of(f.middle);
+      d.text = "label " + std::to_string(f.label) + " of the mesh lies where label " + std::to_string(f.best_match) +
+               " of the slices is" + measured(" (Dice %.3f", f.best_dice) + measured("; with its own %.3f) ", own) +
+               place_of(f.middle);
       found.push_back(std::move(d));
     }
     const std::size_t total = found.size();
@@ -310,7 +331,8 @@ class DefectFinder {
 
   /// The worst of `values` below a limit, worst first.
   template <class Value>
-  std::vector<std::pair<double, std::size_t>> worst(std::size_t count, double limit, std::size_t& total, Value value) const {
+  std::vector<std::pair<double, std::size_t>> worst(std::size_t count, double limit, std::size_t& total,
+                                                    Value value) const {
     std::vector<std::pair<double, std::size_t>> list;
     total = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -344,10 +366,12 @@ class DefectFinder {
     if (!volume_ || volume_->tets == 0 || volume_->dihedral_min_deg >= o_.poor_dihedral_deg) return;
     std::size_t total = 0;
     std::vector<Defect> found;
-    const auto list = worst(mesh_->tets.size(), o_.poor_dihedral_deg, total, [&](std::size_t t) { return smallest_dihedral_deg(*mesh_, t); });
+    const auto list = worst(mesh_->tets.size(), o_.poor_dihedral_deg, total,
+                            [&](std::size_t t) { return smallest_dihedral_deg(*mesh_, t); });
     for (const auto& [angle, t] : list) {
       Defect d = of_tet("poor_tet", t);
-      d.text = "tet " + std::to_string(t) + measured(" has a dihedral angle of %.2f degrees ", angle) + place_of(d.where);
+      d.text =
+          "tet " + std::to_string(t) + measured(" has a dihedral angle of %.2f degrees ", angle) + place_of(d.where);
       found.push_back(std::move(d));
     }
     cut(found, total);
@@ -379,16 +403,19 @@ class DefectFinder {
 
 }  // namespace
 
-std::vector<Defect> find_defects(const InterfaceComplex& complex, const SurfaceCheck& surface, const TetMesh* mesh, const VolumeCheck* volume,
-                                 const std::vector<LabelFidelity>* fidelity, const DefectOptions& options) {
+std::vector<Defect> find_defects(const InterfaceComplex& complex, const SurfaceCheck& surface, const TetMesh* mesh,
+                                 const VolumeCheck* volume, const std::vector<LabelFidelity>* fidelity,
+                                 const DefectOptions& options) {
   return DefectFinder(complex, surface, mesh, volume, fidelity, options).run();
 }
 
-InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh* mesh, const std::vector<Defect>& defects) {
+InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh* mesh,
+                                  const std::vector<Defect>& defects) {
   InterfaceComplex out;
   out.space = complex.space;
   std::unordered_map<std::int64_t, std::int32_t> number;
-  const auto add = [&](const std::vector<Vec3>& points, std::array<std::int32_t, 3> v, std::int64_t offset, Label label) {
+  const auto add = [&](const std::vector<Vec3>& points, std::array<std::int32_t, 3> v, std::int64_t offset,
+                       Label label) {
     InterfaceTriangle t;
     for (int k = 0; k < 3; ++k) {
       const auto [it, is_new] = number.emplace(offset + v[k], static_cast<std::int32_t>(out.points.size()));
@@ -405,20 +432,26 @@ InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh
     const Label label = static_cast<Label>(i + 1);
     for (const std::int64_t e : d.entities) {
       if (d.entity_kind == "triangles") add(complex.points, complex.triangles[e].v, 0, label);
-      if (d.entity_kind == "points" && d.kind != "nonconforming_face") at_point.emplace(static_cast<std::int32_t>(e), label);
+      if (d.entity_kind == "points" && d.kind != "nonconforming_face")
+        at_point.emplace(static_cast<std::int32_t>(e), label);
       if (d.entity_kind == "tets" && mesh && mesh->is_wedge(static_cast<std::size_t>(e))) {
-        const std::int64_t offset = mesh->points.data() == complex.points.data() ? 0 : static_cast<std::int64_t>(complex.points.size());
+        const std::int64_t offset =
+            mesh->points.data() == complex.points.data() ? 0 : static_cast<std::int64_t>(complex.points.size());
         const auto& w = mesh->wedges[static_cast<std::size_t>(e) - mesh->tets.size()];
         add(mesh->points, {w[0], w[2], w[1]}, offset, label);
         add(mesh->points, {w[3], w[4], w[5]}, offset, label);
       } else if (d.entity_kind == "tets" && mesh) {
         const auto& v = mesh->tets[e];
-        const std::int64_t offset = mesh->points.data() == complex.points.data() ? 0 : static_cast<std::int64_t>(complex.points.size());
-        for (const auto& f : {std::array<int, 3>{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}) add(mesh->points, {v[f[0]], v[f[1]], v[f[2]]}, offset, label);
+        const std::int64_t offset =
+            mesh->points.data() == complex.points.data() ? 0 : static_cast<std::int64_t>(complex.points.size());
+        for (const auto& f : {std::array<int, 3>{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}})
+          add(mesh->points, {v[f[0]], v[f[1]], v[f[2]]}, offset, label);
       }
     }
     if (d.kind == "nonconforming_face" && mesh && d.entities.size() == 3)
-      add(mesh->points, {static_cast<std::int32_t>(d.entities[0]), static_cast<std::int32_t>(d.entities[1]), static_cast<std::int32_t>(d.entities[2])},
+      add(mesh->points,
+          {static_cast<std::int32_t>(d.entities[0]), static_cast<std::int32_t>(d.entities[1]),
+           static_cast<std::int32_t>(d.entities[2])},
           static_cast<std::int64_t>(complex.points.size()), label);
   }
   if (!at_point.empty())

@@ -10,9 +10,10 @@
 namespace stackmesh {
 
 struct DefectOptions {
-  std::size_t most_of_a_kind = 100;  ///< longest list of one kind, largest first; the text of the last says how many there are
-  double poor_angle_deg = 10;        ///< triangles below are listed
-  double poor_dihedral_deg = 8;      ///< tets below are listed
+  /// longest list of one kind, largest first; the text of the last says how many there are
+  std::size_t most_of_a_kind = 100;
+  double poor_angle_deg = 10;    ///< triangles below are listed
+  double poor_dihedral_deg = 8;  ///< tets below are listed
   /// Slice of the input nearest to a point, from 0; unset: no sections are told.
   std::function<std::optional<int>(const Vec3&)> section_of;
 };
@@ -27,6 +28,7 @@ std::vector<Defect> find_defects(const InterfaceComplex& complex, const SurfaceC
 
 /// The triangles (tets by their faces) that defects name, for a file beside the report; `label` of each is the
 /// number of its defect, from 1.
-InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh* mesh, const std::vector<Defect>& defects);
+InterfaceComplex defect_triangles(const InterfaceComplex& complex, const TetMesh* mesh,
+                                  const std::vector<Defect>& defects);
 
 }  // namespace stackmesh

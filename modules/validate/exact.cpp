@@ -18,8 +18,7 @@ constexpr double kTiny = 1e-250;
 
 int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
-  if ((u.x == 0 && v.x == 0 && w.x == 0) || (u.y == 0 && v.y == 0 && w.y == 0) ||
-      (u.z == 0 && v.z == 0 && w.z == 0))
+  if ((u.x == 0 && v.x == 0 && w.x == 0) || (u.y == 0 && v.y == 0 && w.y == 0) || (u.z == 0 && v.z == 0 && w.z == 0))
     return 0;  // a common axis-parallel plane: by far the most frequent zero
   const double vw_yz = v.y * w.z, vw_zy = v.z * w.y, vw_zx = v.z * w.x, vw_xz = v.x * w.z, vw_xy = v.x * w.y,
                vw_yx = v.y * w.x;
@@ -32,12 +31,10 @@ int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
 }
 
 int exact_orientation_2d(double ax, double ay, double bx, double by, double cx, double cy) {
-  const double left = (bx - ax) * (cy - ay), right = (by - ay) * (cx - ax),
-               size = std::abs(left) + std::abs(right);
+  const double left = (bx - ax) * (cy - ay), right = (by - ay) * (cx - ax), size = std::abs(left) + std::abs(right);
   const double det = left - right;
   if (size > kTiny && size < 1e300 && std::abs(det) > 1e-15 * size) return det > 0 ? 1 : -1;
-  return static_cast<int>(
-      CGAL::orientation(Kernel::Point_2(ax, ay), Kernel::Point_2(bx, by), Kernel::Point_2(cx, cy)));
+  return static_cast<int>(CGAL::orientation(Kernel::Point_2(ax, ay), Kernel::Point_2(bx, by), Kernel::Point_2(cx, cy)));
 }
 
 bool exact_collinear(const Vec3& a, const Vec3& b, const Vec3& c) {

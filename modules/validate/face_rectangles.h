@@ -13,8 +13,7 @@ struct Rectangle {
 };
 
 inline double rectangle_distance2(const Vec3& p, const Rectangle& r) {
-  const double x = std::max({0.0, r.low.x - p.x, p.x - r.high.x}),
-               y = std::max({0.0, r.low.y - p.y, p.y - r.high.y}),
+  const double x = std::max({0.0, r.low.x - p.x, p.x - r.high.x}), y = std::max({0.0, r.low.y - p.y, p.y - r.high.y}),
                z = std::max({0.0, r.low.z - p.z, p.z - r.high.z});
   return x * x + y * y + z * z;
 }

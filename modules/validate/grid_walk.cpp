@@ -22,8 +22,7 @@ struct Crossing {
 class Walker {
  public:
   Walker(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
-         const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels,
-         int step)
+         const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels, int step)
       : complex_(complex), boundaries_(boundaries), runs_(runs), row_label_(row_label), labels_(labels), step_(step) {
     points_.reserve(grid_points.size());
     for (const Vec3& p : grid_points)
@@ -63,7 +62,8 @@ class Walker {
     });
     for (std::size_t row = 0; row < rows; ++row) {
       const double n = static_cast<double>(std::max<std::size_t>(1, walk.row_centres[row]));
-      walk.row_middle[row] = {static_cast<double>(sums[row][0]) / n, static_cast<double>(sums[row][1]) / n, static_cast<double>(sums[row][2]) / n};
+      walk.row_middle[row] = {static_cast<double>(sums[row][0]) / n, static_cast<double>(sums[row][1]) / n,
+                              static_cast<double>(sums[row][2]) / n};
       if (row_label_[row] < 0) continue;
       walk.mesh[row_label_[row]] += walk.row_centres[row];
       walk.both[row_label_[row]] += walk.overlap[row * labels_ + row_label_[row]];
@@ -83,7 +83,8 @@ class Walker {
   using Pairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
   struct PlaneResult {
-    PlaneResult(std::size_t rows, std::size_t labels) : centres(rows), sum_w(rows), sum_u(rows), overlap(rows * labels) {}
+    PlaneResult(std::size_t rows, std::size_t labels)
+        : centres(rows), sum_w(rows), sum_u(rows), overlap(rows * labels) {}
     std::vector<std::size_t> centres, sum_w, sum_u, overlap;
     Pairs same_solid, meets;
   };
@@ -155,23 +156,19 @@ class Walker {
       if (in_a != in_b || in_b != in_c) continue;
       const double sum = a + b + c;
       const double w = sum != 0 ? (a * w0 + b * w1 + c * w2) / sum : (w0 + w1 + w2) / 3;
-      out.push_back(
-          {u, std::clamp(w, std::min({w0, w1, w2}), std::max({w0, w1, w2})), t, in_a != left_handed_});
+      out.push_back({u, std::clamp(w, std::min({w0, w1, w2}), std::max({w0, w1, w2})), t, in_a != left_handed_});
     }
   }
 
   void walk_plane(std::int32_t v, PlaneResult& result) const {
     std::vector<Crossing> crossings;
-    for (std::size_t k = start_[v]; k < start_[v + 1]; ++k)
-      cross_triangle(triangles_[k], v + kOffset[2], crossings);
+    for (std::size_t k = start_[v]; k < start_[v + 1]; ++k) cross_triangle(triangles_[k], v + kOffset[2], crossings);
     std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
       return a.u != b.u ? a.u < b.u : a.w != b.w ? a.w < b.w : a.triangle < b.triangle;
     });
     for (auto begin = crossings.begin(); begin != crossings.end();) {
-      const auto end =
-          std::find_if(begin, crossings.end(), [&](const Crossing& c) { return c.u != begin->u; });
-      walk_line(static_cast<std::size_t>(v) * runs_.size[1] + begin->u, &*begin, &*begin + (end - begin),
-                result);
+      const auto end = std::find_if(begin, crossings.end(), [&](const Crossing& c) { return c.u != begin->u; });
+      walk_line(static_cast<std::size_t>(v) * runs_.size[1] + begin->u, &*begin, &*begin + (end - begin), result);
       begin = end;
     }
   }
@@ -188,8 +185,7 @@ class Walker {
       for (Crossing* d = c; row_before(*c) != row && d != end && d->w - c->w < 1e-3; ++d)
         if (row_before(*d) == row) std::rotate(c, d, d + 1);
       if (row >= 0) {
-        if (row_before(*c) == row)
-          add(result.same_solid, piece, boundaries_.piece[c->triangle][c->upwards ? 0 : 1]);
+        if (row_before(*c) == row) add(result.same_solid, piece, boundaries_.piece[c->triangle][c->upwards ? 0 : 1]);
         count(line, run, row, piece, since, c->w, result);
       }
       row = boundaries_.row[c->triangle][c->upwards ? 1 : 0];
@@ -203,8 +199,7 @@ class Walker {
              PlaneResult& result) const {
     const std::int32_t label = row_label_[row];
     const auto centre = [&](double w) {
-      return static_cast<std::int32_t>(
-          std::clamp(std::ceil(w - kOffset[0]), 0.0, static_cast<double>(runs_.size[0])));
+      return static_cast<std::int32_t>(std::clamp(std::ceil(w - kOffset[0]), 0.0, static_cast<double>(runs_.size[0])));
     };
     const std::int32_t first = centre(from), last = centre(to);
     if (first >= last) return;
@@ -235,8 +230,8 @@ class Walker {
 }  // namespace
 
 GridWalk walk_grid(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
-                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label,
-                   std::size_t labels, int threads, int step) {
+                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels,
+                   int threads, int step) {
   return Walker(complex, boundaries, runs, grid_points, row_label, labels, step).run(threads);
 }
 

@@ -12,8 +12,8 @@ namespace stackmesh {
 /// What walking every grid line through a complex tells, by index into volume.labels.
 struct GridWalk {
   std::vector<std::size_t> input, mesh,
-      both;                          ///< voxel centres of the label: in the input, in the mesh, in both
-  std::vector<std::int32_t> solid;   ///< per piece of the boundaries: the smallest piece of the same solid
+      both;                         ///< voxel centres of the label: in the input, in the mesh, in both
+  std::vector<std::int32_t> solid;  ///< per piece of the boundaries: the smallest piece of the same solid
   std::vector<std::pair<std::int32_t, std::int32_t>>
       meets;  ///< (input component, solid) that share a voxel centre of the right label
   /// Per row of the boundaries, whatever label it stands for:
@@ -27,7 +27,7 @@ struct GridWalk {
 /// complex's points along W, U, V (LabelRuns::to_grid); `row_label`: index into volume.labels for each row of
 /// the boundaries, or -1. With `step` above 1 only every step-th plane is walked, and `input` counts those.
 GridWalk walk_grid(const InterfaceComplex& complex, const Boundaries& boundaries, const LabelRuns& runs,
-                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label,
-                   std::size_t labels, int threads, int step = 1);
+                   const std::vector<Vec3>& grid_points, const std::vector<std::int32_t>& row_label, std::size_t labels,
+                   int threads, int step = 1);
 
 }  // namespace stackmesh

@@ -38,7 +38,8 @@ std::vector<EdgeUse> sorted_uses(const InterfaceComplex& complex) {
 
 class Agreement {
  public:
-  Agreement(const InterfaceComplex& complex, int threads, std::size_t limit) : c_(complex), threads_(threads), limit_(limit), pieces_(complex.triangles.size()) {}
+  Agreement(const InterfaceComplex& complex, int threads, std::size_t limit)
+      : c_(complex), threads_(threads), limit_(limit), pieces_(complex.triangles.size()) {}
 
   LabelConflicts run() {
     edges();
@@ -59,16 +60,20 @@ class Agreement {
     for (std::size_t first = 0, end = 0; first < uses.size(); first = end) {
       while (end < uses.size() && uses[end].a == uses[first].a && uses[end].b == uses[first].b) ++end;
       for (std::size_t i = first + 1; i < end; ++i) pieces_.join(uses[first].triangle, uses[i].triangle);
-      if (end - first > 2) around({uses.begin() + static_cast<std::ptrdiff_t>(first), uses.begin() + static_cast<std::ptrdiff_t>(end)});
+      if (end - first > 2)
+        around({uses.begin() + static_cast<std::ptrdiff_t>(first), uses.begin() + static_cast<std::ptrdiff_t>(end)});
     }
   }
 
   /// The triangles of an edge, turned about it by the right hand from the first one on.
   void around(std::vector<EdgeUse> uses) {
     const Vec3 &a = c_.points[uses[0].a], &b = c_.points[uses[0].b];
-    const auto side = [&](const EdgeUse& from, const EdgeUse& to) { return exact_orientation(a, b, c_.points[from.apex], c_.points[to.apex]); };
+    const auto side = [&](const EdgeUse& from, const EdgeUse& to) {
+      return exact_orientation(a, b, c_.points[from.apex], c_.points[to.apex]);
+    };
     const EdgeUse zero = uses[0];
-    const auto half = [&](const EdgeUse& u) {  // 0 the first one, 1 less than half a turn from it, 2 half a turn, 3 more
+    // 0 the first one, 1 less than half a turn from it, 2 half a turn, 3 more
+    const auto half = [&](const EdgeUse& u) {
       if (u.triangle == zero.triangle) return 0;
       const int s = side(zero, u);
       return s > 0 ? 1 : s == 0 ? 2 : 3;
@@ -107,7 +112,8 @@ class Agreement {
       }
       const double at = dot(normal, p - from) / slope;
       const Vec3 q = from + at * along - p;
-      const double w = dot(normal, normal), y = dot(cross(q, f), normal) / w, z = dot(cross(e, q), normal) / w, x = 1 - y - z;
+      const double w = dot(normal, normal), y = dot(cross(q, f), normal) / w, z = dot(cross(e, q), normal) / w,
+                   x = 1 - y - z;
       const double least = std::min({x, y, z});
       if (least < -kNear) return;
       if (least < kNear || std::abs(at) < 1e-9 * reach) {
@@ -159,7 +165,8 @@ class Agreement {
   /// The first two triangles along a ray that contradict each other; (-1, -1): none.
   Pair follow(const BoxTree& tree, std::int32_t start, double reach) const {
     for (int turn = 0; turn < 16; ++turn) {
-      const double phi = 0.7 + 2.399963 * turn, z = 0.85 - 0.11 * turn, r = std::sqrt(1 - z * z);  // spread over the sphere, along no axis
+      // spread over the sphere, along no axis
+      const double phi = 0.7 + 2.399963 * turn, z = 0.85 - 0.11 * turn, r = std::sqrt(1 - z * z);
       const Vec3 along{r * std::cos(phi), r * std::sin(phi), z};
       const auto& v = c_.triangles[start].v;
       const Vec3 normal = cross(c_.points[v[1]] - c_.points[v[0]], c_.points[v[2]] - c_.points[v[0]]);

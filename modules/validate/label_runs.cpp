@@ -27,15 +27,13 @@ void number_components(LabelRuns& r) {
   const std::size_t lines = r.start.size() - 1, in_plane = static_cast<std::size_t>(r.size[1]);
   for (std::size_t line = 0; line < lines; ++line) {
     const auto join = [&](std::size_t i, std::size_t j) {
-      if (r.runs[i].label == r.runs[j].label)
-        sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+      if (r.runs[i].label == r.runs[j].label) sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
     };
     if (line % in_plane > 0) overlaps(r, line, line - 1, join);
     if (line >= in_plane) overlaps(r, line, line - in_plane, join);
   }
   for (std::size_t i = 0; i < r.runs.size(); ++i) {
-    const std::int32_t root =
-        sets.find(static_cast<std::int32_t>(i));  // the smallest member: numbered before
+    const std::int32_t root = sets.find(static_cast<std::int32_t>(i));  // the smallest member: numbered before
     if (root == static_cast<std::int32_t>(i)) {
       r.runs[i].component = static_cast<std::int32_t>(r.component_label.size());
       r.component_label.push_back(r.runs[i].label);
@@ -62,8 +60,7 @@ LabelRuns find_runs(const LabelVolume& volume, int stack_axis, int threads) {
     stride[k] = strides[r.axis[k]];
   }
   r.origin_mm = volume.origin_mm;
-  const std::size_t planes = static_cast<std::size_t>(r.size[2]),
-                    in_plane = static_cast<std::size_t>(r.size[1]);
+  const std::size_t planes = static_cast<std::size_t>(r.size[2]), in_plane = static_cast<std::size_t>(r.size[1]);
   std::vector<std::vector<LabelRun>> of_plane(planes);
   r.start.assign(planes * in_plane + 1, 0);
   parallel_for(planes, threads, [&](std::size_t v) {

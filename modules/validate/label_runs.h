@@ -31,9 +31,7 @@ struct LabelRuns {
     const Vec3 d = world - origin_mm;
     return {dot(d, direction[0]), dot(d, direction[1]), dot(d, direction[2])};
   }
-  Vec3 place(double w, double u, double v) const {
-    return {w * spacing_mm[0], u * spacing_mm[1], v * spacing_mm[2]};
-  }
+  Vec3 place(double w, double u, double v) const { return {w * spacing_mm[0], u * spacing_mm[1], v * spacing_mm[2]}; }
 };
 
 LabelRuns find_runs(const LabelVolume& volume, int stack_axis, int threads);

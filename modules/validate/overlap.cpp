@@ -45,12 +45,16 @@ LabelOverlap OverlapMeter::measure(const InterfaceComplex& complex, const Frame&
   std::sort(result.mesh_labels.begin(), result.mesh_labels.end());
   result.mesh_labels.erase(std::unique(result.mesh_labels.begin(), result.mesh_labels.end()), result.mesh_labels.end());
   const auto row_of = [&](Label l) {
-    return l == 0 ? -1 : static_cast<std::int32_t>(std::lower_bound(result.mesh_labels.begin(), result.mesh_labels.end(), l) - result.mesh_labels.begin());
+    return l == 0
+               ? -1
+               : static_cast<std::int32_t>(std::lower_bound(result.mesh_labels.begin(), result.mesh_labels.end(), l) -
+                                           result.mesh_labels.begin());
   };
   Boundaries rows;  // one piece a label: nobody asks for pieces
   rows.row.reserve(complex.triangles.size());
   for (const InterfaceTriangle& t : complex.triangles)
-    rows.row.push_back(t.below == t.above ? std::array<std::int32_t, 2>{-1, -1} : std::array<std::int32_t, 2>{row_of(t.below), row_of(t.above)});
+    rows.row.push_back(t.below == t.above ? std::array<std::int32_t, 2>{-1, -1}
+                                          : std::array<std::int32_t, 2>{row_of(t.below), row_of(t.above)});
   if (frame.mirrors())
     for (auto& sides : rows.row) std::swap(sides[0], sides[1]);
   rows.piece = rows.row;

@@ -26,7 +26,8 @@ class OverlapMeter {
  public:
   OverlapMeter(const LabelVolume& volume, int stack_axis, int threads);
   ~OverlapMeter();
-  /// `frame` takes the mesh's points to the volume's world. Looks at every k-th slice, so that about `slices` are seen (0: all).
+  /// `frame` takes the mesh's points to the volume's world. Looks at every k-th slice, so that about `slices` are seen
+  /// (0: all).
   LabelOverlap measure(const InterfaceComplex& complex, const Frame& frame = {}, int slices = 0) const;
 
  private:

@@ -59,8 +59,7 @@ bool inside(Flat p, Flat a, Flat b, Flat c) {
 
 bool coplanar_segment_meets(const Vec3& p3, const Vec3& q3, const Corners& t) {
   const int axis = drop_axis(t);
-  const Flat p = drop(p3, axis), q = drop(q3, axis), a = drop(t.a, axis), b = drop(t.b, axis),
-             c = drop(t.c, axis);
+  const Flat p = drop(p3, axis), q = drop(q3, axis), a = drop(t.a, axis), b = drop(t.b, axis), c = drop(t.c, axis);
   return inside(p, a, b, c) || inside(q, a, b, c) || segments_meet(p, q, a, b) || segments_meet(p, q, b, c) ||
          segments_meet(p, q, c, a);
 }
@@ -129,8 +128,7 @@ bool corner_collide(const Corners& s, const Corners& t) {
     if (lm > 0 && ln > 0) {
       const Vec3 u = (1 / lm) * m - (1 / ln) * n;
       const double eps = 1e-14 * (std::abs(u.x) + std::abs(u.y) + std::abs(u.z));
-      if (dot(u, b) > eps * lb && dot(u, c) > eps * lc && dot(u, d) < -eps * ld && dot(u, e) < -eps * le)
-        return false;
+      if (dot(u, b) > eps * lb && dot(u, c) > eps * lc && dot(u, d) < -eps * ld && dot(u, e) < -eps * le) return false;
     }
   }
   const int sd = side(s, t.b), se = side(s, t.c);
@@ -147,8 +145,7 @@ bool edge_collide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   if (dot(cross(e, f), cross(e, g)) < -1e-13 * le * le * max_abs(f) * max_abs(g)) return false;
   if (exact_orientation(a, b, c, d) != 0) return false;
   const int axis = drop_axis({a, b, c});
-  return turn(drop(a, axis), drop(b, axis), drop(c, axis)) ==
-         turn(drop(a, axis), drop(b, axis), drop(d, axis));
+  return turn(drop(a, axis), drop(b, axis), drop(c, axis)) == turn(drop(a, axis), drop(b, axis), drop(d, axis));
 }
 
 }  // namespace

@@ -13,14 +13,22 @@ std::string text_of(const char* format, double value) {
   return buffer;
 }
 
-std::string counted(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
 
-Status above(double value, double warn, double fail) { return value > fail ? Status::fail : value > warn ? Status::warn : Status::pass; }
-Status below(double value, double warn, double fail) { return value < fail ? Status::fail : value < warn ? Status::warn : Status::pass; }
+Status above(double value, double warn, double fail) {
+  return value > fail ? Status::fail : value > warn ? Status::warn : Status::pass;
+}
+Status below(double value, double warn, double fail) {
+  return value < fail ? Status::fail : value < warn ? Status::warn : Status::pass;
+}
 Status above(double value, const std::optional<double>& warn, const std::optional<double>& fail) {
   return fail && value > *fail ? Status::fail : warn && value > *warn ? Status::warn : Status::pass;
 }
-void worsen(Status& status, Status other) { status = std::max(status, other); }
+void worsen(Status& status, Status other) {
+  status = std::max(status, other);
+}
 
 class Judge {
  public:
@@ -59,8 +67,11 @@ class Judge {
     v.status = s.open_edges > 0 ? Status::fail : Status::pass;
     for (const LabelSurface& label : s.labels)
       if (!label.closed) v.labels.push_back(label.label);
-    v.explanation = v.labels.empty() ? "Every edge of every label's surface is met from both sides, so each label encloses a volume."
-                                     : "Edges at which a label's surface ends, or its triangles face against each other: " + list(v.labels) + ".";
+    v.explanation =
+        v.labels.empty()
+            ? "Every edge of every label's surface is met from both sides, so each label encloses a volume."
+            : "Edges at which a label's surface ends, or its triangles face against each other: " + list(v.labels) +
+                  ".";
   }
 
   std::string list(const std::vector<Label>& labels) const {
@@ -77,21 +88,25 @@ class Judge {
     Verdict& v = add("intersections", "Free of intersections", true);
     const std::size_t pairs = s.self_intersections - s.degenerate_triangles;
     v.figure = counted(pairs, "crossing pair", "crossing pairs");
-    if (s.degenerate_triangles > 0) v.figure += ", " + counted(s.degenerate_triangles, "triangle without area", "triangles without area");
+    if (s.degenerate_triangles > 0)
+      v.figure += ", " + counted(s.degenerate_triangles, "triangle without area", "triangles without area");
     v.limit = "none allowed";
     v.status = s.self_intersections > 0 ? Status::fail : Status::pass;
-    v.explanation = v.status == Status::pass ? "No two triangles meet but in the corners and edges they share (exact arithmetic)."
-                                             : "Triangles meet where they share no corner or edge, or have no area (exact arithmetic).";
+    v.explanation = v.status == Status::pass
+                        ? "No two triangles meet but in the corners and edges they share (exact arithmetic)."
+                        : "Triangles meet where they share no corner or edge, or have no area (exact arithmetic).";
   }
 
   void orientation() {
     Verdict& v = add("orientation", "No inverted tetrahedra", true);
     v.figure = std::to_string(in_.volume->inverted) + " of " + counted(in_.volume->tets, "tetrahedron", "tetrahedra");
-    if (const std::size_t wedges = in_.volume->wedges + in_.volume->pyramids; wedges > 0) v.figure += " and " + counted(wedges, "wedge", "wedges");
+    if (const std::size_t wedges = in_.volume->wedges + in_.volume->pyramids; wedges > 0)
+      v.figure += " and " + counted(wedges, "wedge", "wedges");
     v.limit = "none allowed";
     v.status = in_.volume->inverted > 0 ? Status::fail : Status::pass;
-    v.explanation = v.status == Status::pass ? "Every tetrahedron has a positive volume (exact arithmetic)."
-                                             : "These have no volume or a negative one (exact arithmetic): a solver will stop at them.";
+    v.explanation = v.status == Status::pass
+                        ? "Every tetrahedron has a positive volume (exact arithmetic)."
+                        : "These have no volume or a negative one (exact arithmetic): a solver will stop at them.";
   }
 
   void conforming() {
@@ -100,8 +115,10 @@ class Judge {
     if (in_.volume->order == 2) v.figure += ", " + counted(in_.volume->nonconforming_edges, "edge", "edges");
     v.limit = "none allowed";
     v.status = in_.volume->conforms ? Status::pass : Status::fail;
-    v.explanation = v.status == Status::pass ? "Neighbouring tetrahedra share whole faces, and the faces between labels are the surface's triangles."
-                                             : "Faces shared by more than two tetrahedra, or whose labels differ from the surface's.";
+    v.explanation =
+        v.status == Status::pass
+            ? "Neighbouring tetrahedra share whole faces, and the faces between labels are the surface's triangles."
+            : "Faces shared by more than two tetrahedra, or whose labels differ from the surface's.";
   }
 
   void topology() {
@@ -116,16 +133,24 @@ class Judge {
       v.labels.push_back(t.label);
       worsen(v.status, Status::warn);
       v.explanation += " " + name(t.label) + ":";
-      if (t.surplus() > 0) v.explanation += " " + counted(static_cast<std::size_t>(t.handles), "handle", "handles") + " where the slices imply at most " + std::to_string(t.implied_handles) + ";";
-      if (loose) v.explanation += " " + counted(static_cast<std::size_t>(t.pieces), "piece", "pieces") + " where the slices imply " + std::to_string(t.implied_pieces) + ";";
+      if (t.surplus() > 0)
+        v.explanation += " " + counted(static_cast<std::size_t>(t.handles), "handle", "handles") +
+                         " where the slices imply at most " + std::to_string(t.implied_handles) + ";";
+      if (loose)
+        v.explanation += " " + counted(static_cast<std::size_t>(t.pieces), "piece", "pieces") +
+                         " where the slices imply " + std::to_string(t.implied_pieces) + ";";
       if (t.surplus() > most) most = t.surplus(), most_label = t.label;
     }
     if (l_.handles_fail > 0 && surplus >= static_cast<long>(l_.handles_fail)) v.status = Status::fail;
     v.figure = counted(static_cast<std::size_t>(surplus), "handle too many", "handles too many");
-    if (loose_pieces > 0) v.figure += ", " + counted(static_cast<std::size_t>(loose_pieces), "piece too many", "pieces too many");
+    if (loose_pieces > 0)
+      v.figure += ", " + counted(static_cast<std::size_t>(loose_pieces), "piece too many", "pieces too many");
     if (most_label != 0 && v.labels.size() > 1) v.figure += ", most in " + name(most_label);
     v.limit = l_.handles_fail > 0 ? "warn above 0, fail from " + std::to_string(l_.handles_fail) : "warn above 0";
-    v.explanation = "Tunnels and loops of each label that no slice has: what lies inside an outline goes on in the next slice where it overlaps it." + v.explanation;
+    v.explanation =
+        "Tunnels and loops of each label that no slice has: what lies inside an outline goes on in the next slice "
+        "where it overlaps it." +
+        v.explanation;
     if (v.explanation.back() == ';') v.explanation.back() = '.';
   }
 
@@ -149,12 +174,14 @@ class Judge {
       worsen(v.status, lost ? Status::fail : Status::warn);
     }
     v.figure = missing > 0 ? std::to_string(missing) + " of " + counted(parts, "component", "components") + " missing"
-               : v.labels.empty() ? counted(parts, "component", "components") + ", one to one"
-                                  : "none missing; " + counted(v.labels.size(), "label does", "labels do") + " not match one to one";
+               : v.labels.empty()
+                   ? counted(parts, "component", "components") + ", one to one"
+                   : "none missing; " + counted(v.labels.size(), "label does", "labels do") + " not match one to one";
     if (shrunk > 0) v.figure += " (" + std::to_string(shrunk) + " so small that they cover no voxel centre)";
     v.limit = "none missing; one to one, else a warning";
-    v.explanation = v.labels.empty() ? "Every part of a label in the slices (voxels joined over faces) is one part of the mesh."
-                                     : "Parts are lost, joined, split or added in " + list(v.labels) + ".";
+    v.explanation = v.labels.empty()
+                        ? "Every part of a label in the slices (voxels joined over faces) is one part of the mesh."
+                        : "Parts are lost, joined, split or added in " + list(v.labels) + ".";
   }
 
   bool is_small(const LabelFidelity& f) const { return f.input_voxels < l_.small_label_voxels; }
@@ -197,8 +224,11 @@ class Judge {
     }
     take(v, rows);
     const double total = sum_input > 0 ? sum_mesh / sum_input - 1 : 0;
-    v.figure = rows.size() == 1 ? text_of("%+.2f %%", 100 * worst) : text_of("%+.2f %% in all", 100 * total) + text_of("; worst %+.2f %%, ", 100 * worst) + name(worst_label);
-    v.limit = text_of("warn above %g %%", 100 * l_.volume_warn_rel) + text_of(", fail above %g %%", 100 * l_.volume_fail_rel);
+    v.figure = rows.size() == 1 ? text_of("%+.2f %%", 100 * worst)
+                                : text_of("%+.2f %% in all", 100 * total) + text_of("; worst %+.2f %%, ", 100 * worst) +
+                                      name(worst_label);
+    v.limit =
+        text_of("warn above %g %%", 100 * l_.volume_warn_rel) + text_of(", fail above %g %%", 100 * l_.volume_fail_rel);
     v.explanation = "Volume enclosed by each label's surface against that of its voxels." + blame(v.labels);
     if (open.empty()) return;
     if (rows.empty()) v.figure = "not defined: the surface is open";
@@ -207,7 +237,9 @@ class Judge {
     v.labels.insert(v.labels.end(), open.begin(), open.end());
   }
 
-  std::string blame(const std::vector<Label>& labels) const { return labels.empty() ? "" : " Outside: " + list(labels) + "."; }
+  std::string blame(const std::vector<Label>& labels) const {
+    return labels.empty() ? "" : " Outside: " + list(labels) + ".";
+  }
 
   /// The whole mesh's shift: per axis, the median of the labels' shifts, by voxels.
   void position() {
@@ -235,10 +267,14 @@ class Judge {
     const double worst = std::max({std::abs(shift[0]), std::abs(shift[1]), std::abs(shift[2])});
     Verdict& v = add("position", "In place");
     v.status = above(worst, l_.position_warn_px, l_.position_fail_px);
-    v.figure = text_of("shifted by (%+.2f, ", shift[0]) + text_of("%+.2f, ", shift[1]) + text_of("%+.2f) voxels", shift[2]);
-    v.limit = text_of("warn above %g", l_.position_warn_px) + text_of(", fail above %g voxels along an axis", l_.position_fail_px);
-    v.explanation = "Rigid shift along the volume's axes that fits the mesh best to the voxels' faces. A half or whole voxel tells of a program "
-                    "that counts from corners instead of centres.";
+    v.figure =
+        text_of("shifted by (%+.2f, ", shift[0]) + text_of("%+.2f, ", shift[1]) + text_of("%+.2f) voxels", shift[2]);
+    v.limit = text_of("warn above %g", l_.position_warn_px) +
+              text_of(", fail above %g voxels along an axis", l_.position_fail_px);
+    v.explanation =
+        "Rigid shift along the volume's axes that fits the mesh best to the voxels' faces. A half or whole voxel tells "
+        "of a program "
+        "that counts from corners instead of centres.";
   }
 
   void thickness() {
@@ -254,7 +290,10 @@ class Judge {
     v.figure = text_of("%.1f %% of the surface thinner than", 100 * worst) + text_of(" %g elements", l_.thin_elements);
     if (worst_label != 0 && rows.size() > 1) v.figure += ", " + name(worst_label);
     v.limit = text_of("warn above %g %%", 100 * l_.thin_warn_share);
-    v.explanation = "Share of a label's surface with fewer elements through its thickness: bending is too stiff there with linear elements." + blame(v.labels);
+    v.explanation =
+        "Share of a label's surface with fewer elements through its thickness: bending is too stiff there with linear "
+        "elements." +
+        blame(v.labels);
   }
 
   void fidelity() {
@@ -273,7 +312,8 @@ class Judge {
       if (!std::isnan(band.mean) && in_.voxel_mm > 0) {
         measured = true;
         const double m = band.mean / in_.voxel_mm, x = band.max / in_.voxel_mm;
-        band_mean = std::max(band_mean, m), band_max = std::max(band_max, x), outside = std::max(outside, band.outside_share);
+        band_mean = std::max(band_mean, m), band_max = std::max(band_max, x),
+        outside = std::max(outside, band.outside_share);
         worsen(status, above(m, l_.band_mean_warn_px, l_.band_mean_fail_px));
         worsen(status, above(x, l_.band_max_warn_px, l_.band_max_fail_px));
         badness += m;
@@ -293,20 +333,30 @@ class Judge {
     take(v, rows);
     v.figure = text_of("Dice %.4f", dice > 1 ? 0 : dice) + text_of(", %.2f %% of voxel centres wrong", 100 * wrong);
     if (measured)
-      v.figure += text_of("; outside the band by %.3f on average", band_mean) + text_of(", at most %.2f voxels", band_max) + text_of(" (%.1f %% of the surface)", 100 * outside);
-    v.limit = text_of("Dice %g", l_.dice_warn) + text_of(" (fail %g)", l_.dice_fail) + text_of("; wrong %g", 100 * l_.wrong_centres_warn_share) +
-              text_of(" (%g) %%", 100 * l_.wrong_centres_fail_share) + text_of("; band mean %g", l_.band_mean_warn_px) + text_of(" (%g)", l_.band_mean_fail_px) +
-              text_of(", largest %g", l_.band_max_warn_px) + text_of(" (%g) voxels", l_.band_max_fail_px);
-    const auto asked = [&](const char* name, const char* figure, double value, const std::optional<double>& warn, const std::optional<double>& fail) {
+      v.figure += text_of("; outside the band by %.3f on average", band_mean) +
+                  text_of(", at most %.2f voxels", band_max) + text_of(" (%.1f %% of the surface)", 100 * outside);
+    v.limit = text_of("Dice %g", l_.dice_warn) + text_of(" (fail %g)", l_.dice_fail) +
+              text_of("; wrong %g", 100 * l_.wrong_centres_warn_share) +
+              text_of(" (%g) %%", 100 * l_.wrong_centres_fail_share) + text_of("; band mean %g", l_.band_mean_warn_px) +
+              text_of(" (%g)", l_.band_mean_fail_px) + text_of(", largest %g", l_.band_max_warn_px) +
+              text_of(" (%g) voxels", l_.band_max_fail_px);
+    const auto asked = [&](const char* name, const char* figure, double value, const std::optional<double>& warn,
+                           const std::optional<double>& fail) {
       if (!warn && !fail) return;
       v.figure += text_of(figure, value);
-      v.limit += std::string("; ") + name + (warn ? text_of(" %g", *warn) : "") + (fail ? text_of(" (%g)", *fail) : "") + " px";
+      v.limit += std::string("; ") + name + (warn ? text_of(" %g", *warn) : "") +
+                 (fail ? text_of(" (%g)", *fail) : "") + " px";
     };
-    asked("to faces, mean", "; to voxel faces %.2f px on average", mean, l_.mean_distance_warn_px, l_.mean_distance_fail_px);
+    asked("to faces, mean", "; to voxel faces %.2f px on average", mean, l_.mean_distance_warn_px,
+          l_.mean_distance_fail_px);
     asked("to faces, 95 %", "; 95 %% within %.2f px", p95, l_.p95_distance_warn_px, l_.p95_distance_fail_px);
     asked("to faces, largest", "; at most %.2f px", most, l_.max_distance_warn_px, l_.max_distance_fail_px);
-    v.explanation = "Worst label: voxel centres that are in the wrong label, and how far the surface leaves the cells between voxel centres of different labels" +
-                    text_of(" (voxels of %.3g mm).", in_.voxel_mm) + " A surface that parts the centres as the labels do has none of both, be it stepped or smooth." + blame(v.labels);
+    v.explanation =
+        "Worst label: voxel centres that are in the wrong label, and how far the surface leaves the cells between "
+        "voxel centres of different labels" +
+        text_of(" (voxels of %.3g mm).", in_.voxel_mm) +
+        " A surface that parts the centres as the labels do has none of both, be it stepped or smooth." +
+        blame(v.labels);
   }
 
   void roughness() {
@@ -320,10 +370,14 @@ class Judge {
       rows.push_back({b.label, above(b.bends.above_40_share, l_.bends_warn_share, 2.0), b.bends.above_40_share});
     }
     take(v, rows);
-    v.figure = text_of("mean bend %.1f degrees", in_.bends->surface.mean_deg) + text_of("; %.1f %% of the edges bend by more than 40", 100 * worst);
+    v.figure = text_of("mean bend %.1f degrees", in_.bends->surface.mean_deg) +
+               text_of("; %.1f %% of the edges bend by more than 40", 100 * worst);
     if (worst_label != 0 && rows.size() > 1) v.figure += ", " + name(worst_label);
     v.limit = text_of("warn above %g %%", 100 * l_.bends_warn_share);
-    v.explanation = "Angles between neighbouring triangles of a label's surface: steps of voxels make many sharp ones, and stresses there are those of the steps." + blame(v.labels);
+    v.explanation =
+        "Angles between neighbouring triangles of a label's surface: steps of voxels make many sharp ones, and "
+        "stresses there are those of the steps." +
+        blame(v.labels);
   }
 
   void quality() {
@@ -338,9 +392,11 @@ class Judge {
       worsen(v.status, below(t.dihedral_min_deg, l_.dihedral_warn_deg, l_.dihedral_fail_deg));
       worsen(v.status, above(t.dihedral_max_deg, l_.dihedral_max_warn_deg, l_.dihedral_max_fail_deg));
       worsen(v.status, below(t.scaled_jacobian_min, l_.jacobian_warn, l_.jacobian_fail));
-      v.figure += text_of("; dihedrals %.2f", t.dihedral_min_deg) + text_of(" to %.2f", t.dihedral_max_deg) + text_of("; scaled Jacobian %.3f", t.scaled_jacobian_min);
-      v.limit += text_of("; dihedral %g", l_.dihedral_warn_deg) + text_of(" (%g)", l_.dihedral_fail_deg) + text_of(" to %g", l_.dihedral_max_warn_deg) +
-                 text_of(" (%g)", l_.dihedral_max_fail_deg) + text_of("; Jacobian %g", l_.jacobian_warn) + text_of(" (%g)", l_.jacobian_fail);
+      v.figure += text_of("; dihedrals %.2f", t.dihedral_min_deg) + text_of(" to %.2f", t.dihedral_max_deg) +
+                  text_of("; scaled Jacobian %.3f", t.scaled_jacobian_min);
+      v.limit += text_of("; dihedral %g", l_.dihedral_warn_deg) + text_of(" (%g)", l_.dihedral_fail_deg) +
+                 text_of(" to %g", l_.dihedral_max_warn_deg) + text_of(" (%g)", l_.dihedral_max_fail_deg) +
+                 text_of("; Jacobian %g", l_.jacobian_warn) + text_of(" (%g)", l_.jacobian_fail);
       v.explanation += ", smallest and largest dihedral angle and smallest scaled Jacobian of the tetrahedra";
     }
     v.explanation += ".";
@@ -353,9 +409,13 @@ class Judge {
 
 }  // namespace
 
-const char* to_text(Status status) { return status == Status::pass ? "pass" : status == Status::warn ? "warn" : "fail"; }
+const char* to_text(Status status) {
+  return status == Status::pass ? "pass" : status == Status::warn ? "warn" : "fail";
+}
 
-std::vector<Verdict> judge(const JudgeInput& input, const Limits& limits) { return Judge(input, limits).run(); }
+std::vector<Verdict> judge(const JudgeInput& input, const Limits& limits) {
+  return Judge(input, limits).run();
+}
 
 Status overall(const std::vector<Verdict>& verdicts) {
   Status worst = Status::pass;

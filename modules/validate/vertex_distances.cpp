@@ -10,7 +10,8 @@
 
 namespace stackmesh {
 
-std::vector<float> vertex_distances(const InterfaceComplex& complex, const LabelVolume& volume, int stack_axis, int threads) {
+std::vector<float> vertex_distances(const InterfaceComplex& complex, const LabelVolume& volume, int stack_axis,
+                                    int threads) {
   if (stack_axis < 0 || stack_axis > 2)
     fail_usage("stacking axis " + std::to_string(stack_axis), "vertex distances", "use 0, 1 or 2");
   const LabelRuns runs = find_runs(volume, stack_axis, threads);
@@ -39,7 +40,8 @@ std::vector<float> vertex_distances(const InterfaceComplex& complex, const Label
       for (std::size_t i = chunk * kChunk; i < std::min(points.size(), (chunk + 1) * kChunk); ++i) {
         const Vec3 p = runs.to_grid(complex.points[points[i]]);
         double best2 = 0;
-        hint = tree.nearest(p, hint, [&](std::int32_t r) { return rectangle_distance2(p, rectangles[r]); }, &best2);
+        hint = tree.nearest(
+            p, hint, [&](std::int32_t r) { return rectangle_distance2(p, rectangles[r]); }, &best2);
         distances[points[i]] = std::max(distances[points[i]], static_cast<float>(std::sqrt(best2)));
       }
     });

@@ -10,6 +10,7 @@ namespace stackmesh {
 /// labels that its triangles bound, mm: the largest over those labels. 0 for points of no triangle and for labels
 /// that the volume does not have. The result does not depend on `threads` (0: all of the machine).
 /// @throws Error(usage) for a wrong axis.
-std::vector<float> vertex_distances(const InterfaceComplex& complex, const LabelVolume& volume, int stack_axis, int threads);
+std::vector<float> vertex_distances(const InterfaceComplex& complex, const LabelVolume& volume, int stack_axis,
+                                    int threads);
 
 }  // namespace stackmesh

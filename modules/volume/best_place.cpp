@@ -26,11 +26,14 @@ Vec3 nearest_to_origin(const std::vector<Vec3>& points) {
   return x;
 }
 
-double quality_of(const FanTet& t, const Vec3& p) { return tet_quality(p, t.b, t.c, t.d); }
+double quality_of(const FanTet& t, const Vec3& p) {
+  return tet_quality(p, t.b, t.c, t.d);
+}
 
 Vec3 gradient(const FanTet& t, const Vec3& p, double h) {
   const auto at = [&](double x, double y, double z) { return quality_of(t, {p.x + x, p.y + y, p.z + z}); };
-  return {(at(h, 0, 0) - at(-h, 0, 0)) / (2 * h), (at(0, h, 0) - at(0, -h, 0)) / (2 * h), (at(0, 0, h) - at(0, 0, -h)) / (2 * h)};
+  return {(at(h, 0, 0) - at(-h, 0, 0)) / (2 * h), (at(0, h, 0) - at(0, -h, 0)) / (2 * h),
+          (at(0, 0, h) - at(0, 0, -h)) / (2 * h)};
 }
 
 }  // namespace
@@ -44,7 +47,8 @@ double fan_quality(const std::vector<FanTet>& fan, const Vec3& p, double stop) {
   return worst;
 }
 
-Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double enough, const std::function<bool(const Vec3&)>& allowed) {
+Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double enough,
+                const std::function<bool(const Vec3&)>& allowed) {
   double size = 1e300;
   for (const FanTet& t : fan)
     for (const Vec3& corner : {t.b, t.c, t.d}) size = std::min(size, norm(corner - p));

@@ -18,6 +18,7 @@ double fan_quality(const std::vector<FanTet>& fan, const Vec3& p, double stop);
 /// @param quality of the fan with its point at p (tet_quality of the worst tet); then at the place returned
 /// @param enough tets better than it do not count
 /// @param allowed places where the point may go; unset: everywhere
-Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double enough, const std::function<bool(const Vec3&)>& allowed = {});
+Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double enough,
+                const std::function<bool(const Vec3&)>& allowed = {});
 
 }  // namespace stackmesh::volume

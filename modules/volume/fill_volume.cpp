@@ -13,8 +13,8 @@
 #include "base/warning.h"
 #include "volume/compact.h"
 #include "volume/improve_tets.h"
-#include "volume/relax_surface.h"
 #include "volume/label_tets.h"
+#include "volume/relax_surface.h"
 #include "volume/tetgen_words.h"
 #include "volume/worker_process.h"
 #include "volume/worker_protocol.h"
@@ -23,8 +23,8 @@ namespace stackmesh {
 namespace {
 
 using Status = FillResult::Status;
-using worker::Clock;
 using volume::Compact;
+using worker::Clock;
 using worker::Reply;
 
 void check_input(const InterfaceComplex& complex, const FillOptions& options) {
@@ -115,8 +115,9 @@ class Filler {
       : complex_(complex),
         options_(options),
         program_{options.worker_path, options.worker_args},
-        deadline_(Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(
-                                     1e6 * std::clamp(options.timeout_s, 0.0, 1e9)))) {}
+        deadline_(Clock::now() +
+                  std::chrono::microseconds(static_cast<std::int64_t>(1e6 * std::clamp(options.timeout_s, 0.0, 1e9)))) {
+  }
 
   FillResult run() {
     FillResult result = run_attempts();
@@ -133,15 +134,13 @@ class Filler {
       return failure(Status::empty, "there is nothing to fill: the surface bounds no label");
     input_ = volume::compact(complex_);
     volume::Finding finding = volume::check_closed({complex_.points, input_.welded});
-    if (!finding.message.empty())
-      return failure(Status::refused, finding.message, std::move(finding.triangles));
+    if (!finding.message.empty()) return failure(Status::refused, finding.message, std::move(finding.triangles));
 
     if (is_flat()) return failure(Status::refused, "the surface encloses nothing: it lies in one plane");
 
     const double scale = z_scale_for_aspect(complex_);
-    const bool wants_refinement =
-        options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 || options_.inner_growth ||
-                                  !options_.label_max_volume_mm3.empty();
+    const bool wants_refinement = options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 ||
+                                  options_.inner_growth || !options_.label_max_volume_mm3.empty();
     std::string before;  // what was tried and failed, for the message
     bool refinement_pays = wants_refinement;
     if (wants_refinement) {
@@ -153,8 +152,10 @@ class Filler {
         FillResult result = attempt({true, "", scale}, until, own);
         if (result.status == Status::verified || killed_) return result;
         retry_is_useless_ = false;  // the whole says why
-        if (result.status == Status::crashed || result.status == Status::timed_out) note = result.message;  // another mesh than it gives elsewhere
-        if (!options_.label_max_volume_mm3.empty()) note = result.message + ", so labels have no volume bound of their own";
+        // another mesh than it gives elsewhere
+        if (result.status == Status::crashed || result.status == Status::timed_out) note = result.message;
+        if (!options_.label_max_volume_mm3.empty())
+          note = result.message + ", so labels have no volume bound of their own";
       }
       FillResult result = attempt({true, "", scale}, until);
       if (result.status == Status::verified) return with_note(std::move(result), note);
@@ -258,7 +259,8 @@ class Filler {
     return sum;
   }
 
-  Reply call_worker(const std::string& switches, const Call& call, bool sized, const Compact& part, Clock::time_point deadline) {
+  Reply call_worker(const std::string& switches, const Call& call, bool sized, const Compact& part,
+                    Clock::time_point deadline) {
     std::vector<Vec3> moved;
     const bool as_is = call.z_scale == 1 && call.turns == 0;
     if (!as_is) {
@@ -267,10 +269,12 @@ class Filler {
     }
     std::vector<double> edges;
     if (sized) edges = sizes(part);
-    const worker::Request request{switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges, &part.corners};
+    const worker::Request request{switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges,
+                                  &part.corners};
     Reply reply = worker::run(program_, request, deadline, options_.given_up);
     if (!reply.killed) return reply;
-    // Someone else ended it (an operator, the kernel for want of memory): the same call again, so that the mesh is the same or none.
+    // Someone else ended it (an operator, the kernel for want of memory): the same call again, so that the mesh is the
+    // same or none.
     const std::string how = reply.text;
     reply = worker::run(program_, request, deadline, options_.given_up);
     const std::lock_guard<std::mutex> lock(warnings_mutex_);
@@ -288,7 +292,8 @@ class Filler {
 
   /// The labels of each group on their own, side by side.
   FillResult attempt(const Call& call, Clock::time_point deadline, const std::vector<Group>& own) {
-    const std::string name = describe(call, switches(call, own[0].max_volume_mm3)) + " in " + std::to_string(own.size()) + " parts";
+    const std::string name =
+        describe(call, switches(call, own[0].max_volume_mm3)) + " in " + std::to_string(own.size()) + " parts";
     std::vector<TetMesh> meshes(own.size());
     std::vector<FillResult> failed(own.size());
     parallel_for(own.size(), options_.threads, [&](std::size_t i) {
@@ -298,7 +303,8 @@ class Filler {
       if (!f.message.empty()) return std::move(f);
     TetMesh mesh = std::move(meshes[0]);
     for (std::size_t i = 1; i < meshes.size(); ++i) {
-      const auto known = static_cast<std::int32_t>(complex_.points.size()), offset = static_cast<std::int32_t>(mesh.points.size()) - known;
+      const auto known = static_cast<std::int32_t>(complex_.points.size()),
+                 offset = static_cast<std::int32_t>(mesh.points.size()) - known;
       mesh.points.insert(mesh.points.end(), meshes[i].points.begin() + known, meshes[i].points.end());
       for (std::array<std::int32_t, 4> t : meshes[i].tets) {
         for (std::int32_t& v : t)
@@ -308,14 +314,16 @@ class Filler {
       mesh.labels.insert(mesh.labels.end(), meshes[i].labels.begin(), meshes[i].labels.end());
     }
     mesh.faces = input_.welded;
-    // Parts that are whole for themselves may not fit (a triangle of one lay within another's tets, once): then all labels are filled at once.
+    // Parts that are whole for themselves may not fit (a triangle of one lay within another's tets, once): then all
+    // labels are filled at once.
     if (volume::Finding finding = volume::check_filled(mesh, options_.threads); !finding.message.empty())
       return failure(Status::refused, name + ": " + finding.message, std::move(finding.triangles));
     return assemble(std::move(mesh), name);
   }
 
   /// Tets of a part's labels, checked against its triangles; the complex's points come first. A failure has a message.
-  FillResult fill(const Call& call, const Compact& part, const std::optional<double>& max_volume_mm3, Clock::time_point deadline, const std::string& name, TetMesh& mesh) {
+  FillResult fill(const Call& call, const Compact& part, const std::optional<double>& max_volume_mm3,
+                  Clock::time_point deadline, const std::string& name, TetMesh& mesh) {
     const auto start = Clock::now();
     Reply reply = call_worker(switches(call, max_volume_mm3) + "Jn", call, sized(call, max_volume_mm3), part, deadline);
     switch (reply.kind) {
@@ -378,7 +386,8 @@ class Filler {
       improve.threads = options_.threads;
       improve.deadline = deadline_;
       volume::improve_tets(mesh, complex_.points.size(), improve, counts);
-      result.moved_points = volume::relax_surface(mesh, complex_.points.size(), std::min(improve.goal_deg, kRelaxDeg), options_.outside_is_empty);
+      result.moved_points = volume::relax_surface(mesh, complex_.points.size(), std::min(improve.goal_deg, kRelaxDeg),
+                                                  options_.outside_is_empty);
       const volume::Finding finding = volume::check_filled(mesh, options_.threads);
       if (!finding.message.empty()) fail_internal("the improved tets are invalid: " + finding.message, name);
       improved = ", improved from " + std::to_string(before);
@@ -398,8 +407,7 @@ class Filler {
       const double off = std::max(0.0, std::abs(a.mm3 - b.mm3) - 1e-13 * (a.terms + b.terms));
       if (off > 1e-6 * larger)
         return failure(Status::volume_mismatch, name + ": label " + std::to_string(label) + " encloses " +
-                                                    number(a.mm3) + " mm3 but was filled with " +
-                                                    number(b.mm3));
+                                                    number(a.mm3) + " mm3 but was filled with " + number(b.mm3));
       if (larger > 0) worst = std::max(worst, off / larger);
     }
 
@@ -461,7 +469,7 @@ class Filler {
   Compact input_;
   std::vector<Warning> warnings_;
   std::mutex warnings_mutex_;
-  std::atomic<bool> killed_{false};    // twice in a row
+  std::atomic<bool> killed_{false};            // twice in a row
   std::atomic<bool> retry_is_useless_{false};  // no worker to be had, or an invalid complex: trying again is no use
 };
 
@@ -484,7 +492,8 @@ double estimate_tets(const InterfaceComplex& complex, const FillOptions& options
   if (options.max_volume_mm3) tets = std::max(tets, 1.5 * volume / *options.max_volume_mm3);
   double bounded = 0;
   for (const auto& [label, v] : volumes)
-    if (const auto own = options.label_max_volume_mm3.find(label); own != options.label_max_volume_mm3.end()) bounded += 1.5 * std::abs(v.mm3) / own->second;
+    if (const auto own = options.label_max_volume_mm3.find(label); own != options.label_max_volume_mm3.end())
+      bounded += 1.5 * std::abs(v.mm3) / own->second;
   tets = std::max(tets, bounded);
   return tets;
 }

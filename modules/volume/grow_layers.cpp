@@ -15,7 +15,9 @@ using volume::LayerFace;
 constexpr double kFull = 0.95;  // of the thickness: what counts as whole
 
 /// The label of an outer face; 0 for other faces.
-Label outer_label(const InterfaceTriangle& f) { return f.below == f.above ? 0 : f.below == 0 ? f.above : f.above == 0 ? f.below : 0; }
+Label outer_label(const InterfaceTriangle& f) {
+  return f.below == f.above ? 0 : f.below == 0 ? f.above : f.above == 0 ? f.below : 0;
+}
 
 double area_of(const std::vector<Vec3>& points, const InterfaceTriangle& f) {
   return 0.5 * norm(cross(points[f.v[1]] - points[f.v[0]], points[f.v[2]] - points[f.v[0]]));
@@ -24,7 +26,8 @@ double area_of(const std::vector<Vec3>& points, const InterfaceTriangle& f) {
 /// Shares of the surface, and the places where the layer is thin.
 class Surveyor {
  public:
-  Surveyor(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces, const Columns& columns, Label label, const LayerSize& size)
+  Surveyor(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces, const Columns& columns,
+           Label label, const LayerSize& size)
       : points_(points), faces_(faces), columns_(columns) {
     out_.label = label;
     out_.asked = size;
@@ -55,7 +58,9 @@ class Surveyor {
     if (columns == 3) out_.wedges += levels;
     if (columns == 2) out_.pyramids += levels;
     if (columns == 1) out_.tets += levels;
-    (least >= kFull * out_.asked.thickness_mm ? out_.full_rel : most == 0 ? out_.missing_rel : out_.thinned_rel) += area;
+    (least >= kFull * out_.asked.thickness_mm ? out_.full_rel
+     : most == 0                              ? out_.missing_rel
+                                              : out_.thinned_rel) += area;
     if (least < kFull * out_.asked.thickness_mm) thin_.push_back(static_cast<std::int32_t>(i));
   }
 
@@ -71,7 +76,8 @@ class Surveyor {
     std::map<std::int32_t, std::vector<std::int32_t>> places;
     for (std::size_t i = 0; i < thin_.size(); ++i) places[sets.find(static_cast<std::int32_t>(i))].push_back(thin_[i]);
     for (const auto& [set, faces] : places) out_.places.push_back(place_of(faces));
-    std::stable_sort(out_.places.begin(), out_.places.end(), [](const LayerPlace& a, const LayerPlace& b) { return a.area_mm2 > b.area_mm2; });
+    std::stable_sort(out_.places.begin(), out_.places.end(),
+                     [](const LayerPlace& a, const LayerPlace& b) { return a.area_mm2 > b.area_mm2; });
   }
 
   LayerPlace place_of(const std::vector<std::int32_t>& faces) const {
@@ -85,7 +91,8 @@ class Surveyor {
       for (const std::int32_t v : faces_[i].v) {
         centre = centre + (area / 3) * points_[v];
         place.thickness_mm = std::min(place.thickness_mm, columns_.thickness[v]);
-        if (columns_.why[v] != LayerLimit::beside) causes[columns_.why[v]] += out_.asked.thickness_mm - columns_.thickness[v];
+        if (columns_.why[v] != LayerLimit::beside)
+          causes[columns_.why[v]] += out_.asked.thickness_mm - columns_.thickness[v];
       }
     }
     centre = (1 / place.area_mm2) * centre;
@@ -127,7 +134,8 @@ LayerPlan plan_layers(const InterfaceComplex& complex, const std::map<Label, Lay
       plan.foot[v] = static_cast<std::int32_t>(plan.core.points.size());
       plan.thickness_mm[v] = columns.thickness[v];
       plan.way[v] = columns.way[v];
-      plan.core.points.push_back(volume::level_of_column(complex.points[v], columns.way[v], columns.thickness[v], size.count, size.count));
+      plan.core.points.push_back(
+          volume::level_of_column(complex.points[v], columns.way[v], columns.thickness[v], size.count, size.count));
     }
   }
   for (std::size_t i = 0; i < plan.faces.size(); ++i) {
@@ -140,7 +148,8 @@ LayerPlan plan_layers(const InterfaceComplex& complex, const std::map<Label, Lay
 }
 
 void add_layers(TetMesh& mesh, const LayerPlan& plan) {
-  std::vector<std::int32_t> between(plan.foot.size(), -1);  // of a column: the first of its points between surface and foot
+  // of a column: the first of its points between surface and foot
+  std::vector<std::int32_t> between(plan.foot.size(), -1);
   std::vector<std::array<std::int32_t, 6>> pyramids;
   std::vector<Label> wedge_labels, pyramid_labels;
   for (const std::int32_t i : plan.layered) {
@@ -154,7 +163,8 @@ void add_layers(TetMesh& mesh, const LayerPlan& plan) {
       if (level == count) return plan.foot[v];
       if (between[v] < 0) {
         between[v] = static_cast<std::int32_t>(mesh.points.size());
-        for (int k = 1; k < count; ++k) mesh.points.push_back(volume::level_of_column(mesh.points[v], plan.way[v], plan.thickness_mm[v], k, count));
+        for (int k = 1; k < count; ++k)
+          mesh.points.push_back(volume::level_of_column(mesh.points[v], plan.way[v], plan.thickness_mm[v], k, count));
       }
       return between[v] + level - 1;
     };
@@ -164,7 +174,8 @@ void add_layers(TetMesh& mesh, const LayerPlan& plan) {
         mesh.labels.push_back(label);
         continue;
       }
-      (f.columns == 3 ? mesh.wedges : pyramids).push_back({node(0, s), node(1, s), node(2, s), node(0, s + 1), node(1, s + 1), node(2, s + 1)});
+      (f.columns == 3 ? mesh.wedges : pyramids)
+          .push_back({node(0, s), node(1, s), node(2, s), node(0, s + 1), node(1, s + 1), node(2, s + 1)});
       (f.columns == 3 ? wedge_labels : pyramid_labels).push_back(label);
     }
   }

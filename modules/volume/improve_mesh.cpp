@@ -25,7 +25,11 @@ ImproveMesh::Face ImproveMesh::face_of(const Corners& v, int slot, std::int32_t 
 }
 
 ImproveMesh::ImproveMesh(const TetMesh& mesh, std::size_t kept)
-    : points(mesh.points), tets(mesh.tets.size()), quality(mesh.tets.size()), movable(mesh.points.size(), 0), kept_(kept) {
+    : points(mesh.points),
+      tets(mesh.tets.size()),
+      quality(mesh.tets.size()),
+      movable(mesh.points.size(), 0),
+      kept_(kept) {
   tet_of_.assign(points.size(), -1);
   for (std::size_t t = 0; t < tets.size(); ++t) {
     tets[t].v = mesh.tets[t];
@@ -74,7 +78,9 @@ ImproveMesh::ImproveMesh(const TetMesh& mesh, std::size_t kept)
     for (const std::int32_t v : f.v) movable[v] = 0;
 }
 
-double ImproveMesh::quality_of(const Corners& v) const { return tet_quality(points[v[0]], points[v[1]], points[v[2]], points[v[3]]); }
+double ImproveMesh::quality_of(const Corners& v) const {
+  return tet_quality(points[v[0]], points[v[1]], points[v[2]], points[v[3]]);
+}
 
 void ImproveMesh::star(std::int32_t vertex, std::vector<std::int32_t>& around) {
   around.clear();
@@ -94,8 +100,8 @@ void ImproveMesh::star(std::int32_t vertex, std::vector<std::int32_t>& around) {
   }
 }
 
-bool ImproveMesh::ring(std::int32_t t, std::int32_t a, std::int32_t b, std::size_t limit, std::vector<std::int32_t>& around,
-                       std::vector<std::int32_t>& ring) const {
+bool ImproveMesh::ring(std::int32_t t, std::int32_t a, std::int32_t b, std::size_t limit,
+                       std::vector<std::int32_t>& around, std::vector<std::int32_t>& ring) const {
   around.clear();
   ring.clear();
   // The other two corners c, d of t, so that (a, b, c, d) is an even permutation of its corners.
@@ -145,7 +151,8 @@ bool ImproveMesh::replace(const std::vector<std::int32_t>& old, const std::vecto
     if (!faces_[i].fresh && faces_[i].tet >= 0) {
       const Tet& outside = tets[faces_[i].tet];
       for (int s = 0; s < 4; ++s)
-        if (outside.n[s] >= 0 && marked(outside.n[s]) && face_of(outside.v, s, 0, false).key == faces_[i].key) mate_[i] = s;
+        if (outside.n[s] >= 0 && marked(outside.n[s]) && face_of(outside.v, s, 0, false).key == faces_[i].key)
+          mate_[i] = s;
     }
   const Label label = tets[old.front()].label;
   for (const std::int32_t t : old)

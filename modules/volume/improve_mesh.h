@@ -79,7 +79,7 @@ class ImproveMesh {
   std::vector<std::uint32_t> stamps_;
   std::vector<char> changed_;  // of each point
   std::uint32_t stamp_ = 0;
-  std::vector<Face> faces_;              // of replace()
+  std::vector<Face> faces_;  // of replace()
   std::vector<std::int32_t> ids_, mate_, stack_;
 };
 

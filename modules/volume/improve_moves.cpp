@@ -18,10 +18,14 @@ constexpr std::size_t kLongestRing = 9, kLargestCavity = 40;
 /// Corner `slot` first, orientation kept.
 Corners first(const Corners& v, int slot) {
   switch (slot) {
-    case 0: return v;
-    case 1: return {v[1], v[0], v[3], v[2]};
-    case 2: return {v[2], v[3], v[0], v[1]};
-    default: return {v[3], v[2], v[1], v[0]};
+    case 0:
+      return v;
+    case 1:
+      return {v[1], v[0], v[3], v[2]};
+    case 2:
+      return {v[2], v[3], v[0], v[1]};
+    default:
+      return {v[3], v[2], v[1], v[0]};
   }
 }
 
@@ -180,12 +184,15 @@ bool ImproveMoves::try_insert(Vec3 p, double enough) {
       if (s.beyond >= 0 && (worst == nullptr || s.quality < worst->quality)) worst = &s;
     if (worst == nullptr || worst->quality > enough) break;
     // A face beyond which the tet is good enough is better left.
-    if (worst->quality > old_worst && m_.quality[worst->beyond] > worst->quality && worst->quality > 0.5 * enough && cavity_.size() > 12) break;
+    if (worst->quality > old_worst && m_.quality[worst->beyond] > worst->quality && worst->quality > 0.5 * enough &&
+        cavity_.size() > 12)
+      break;
     const std::int32_t next = worst->beyond;
     m_.mark(next);
     cavity_.push_back(next);
     old_worst = std::min(old_worst, m_.quality[next]);
-    sides.erase(std::remove_if(sides.begin(), sides.end(), [&](const Side& s) { return s.beyond == next; }), sides.end());
+    sides.erase(std::remove_if(sides.begin(), sides.end(), [&](const Side& s) { return s.beyond == next; }),
+                sides.end());
     add_sides(next);
   }
   fan_.clear();

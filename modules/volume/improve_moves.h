@@ -7,8 +7,8 @@
 
 namespace stackmesh::volume {
 
-/// The changes that may mend a tet (\cite freitag1997, \cite klingner2007). Each is made only if the worst tet afterwards is better than the worst of those
-/// it replaces, so that a mesh never gets worse; unless it is shaken.
+/// The changes that may mend a tet (\cite freitag1997, \cite klingner2007). Each is made only if the worst tet
+/// afterwards is better than the worst of those it replaces, so that a mesh never gets worse; unless it is shaken.
 class ImproveMoves {
  public:
   explicit ImproveMoves(ImproveMesh& mesh) : m_(mesh) {}
@@ -16,7 +16,8 @@ class ImproveMoves {
   /// From now on tets of quality `floor` are good enough for any change but smooth(). Unset: 2.
   void accept_from(double floor) { floor_ = floor; }
 
-  /// Moves a point to where the worst tet around it is best; tets better than `enough` do not count. True when it moved.
+  /// Moves a point to where the worst tet around it is best; tets better than `enough` do not count. True when it
+  /// moved.
   bool smooth(std::int32_t vertex, double enough);
   /// Replaces the tets around an edge of t by ones without it.
   bool remove_edge(std::int32_t t);

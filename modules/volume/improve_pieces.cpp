@@ -19,7 +19,8 @@ struct Piece {
 };
 
 /// `owner`: of each point, the piece whose tets alone have it.
-Piece take_out(const TetMesh& mesh, std::size_t kept, const std::vector<std::int32_t>& owner, const std::vector<std::int32_t>& tets) {
+Piece take_out(const TetMesh& mesh, std::size_t kept, const std::vector<std::int32_t>& owner,
+               const std::vector<std::int32_t>& tets) {
   Piece out;
   std::vector<std::int32_t> number(mesh.points.size(), -1), movable;
   for (const std::int32_t t : tets)
@@ -55,7 +56,8 @@ std::vector<std::int32_t> cut_into_pieces(const TetMesh& mesh, int count) {
     for (const std::int32_t v : mesh.tets[t]) centres[t] = centres[t] + mesh.points[v];
   std::vector<std::int32_t> order(mesh.tets.size()), piece(mesh.tets.size(), 0);
   std::iota(order.begin(), order.end(), 0);
-  const std::function<void(std::size_t, std::size_t, std::int32_t, int)> cut = [&](std::size_t from, std::size_t to, std::int32_t first, int pieces) {
+  const std::function<void(std::size_t, std::size_t, std::int32_t, int)> cut = [&](std::size_t from, std::size_t to,
+                                                                                   std::int32_t first, int pieces) {
     if (pieces == 1) {
       for (std::size_t i = from; i < to; ++i) piece[order[i]] = first;
       return;
@@ -63,12 +65,14 @@ std::vector<std::int32_t> cut_into_pieces(const TetMesh& mesh, int count) {
     double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
     const auto at = [&](std::int32_t t, int k) { return k == 0 ? centres[t].x : k == 1 ? centres[t].y : centres[t].z; };
     for (std::size_t i = from; i < to; ++i)
-      for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at(order[i], k)), high[k] = std::max(high[k], at(order[i], k));
+      for (int k = 0; k < 3; ++k)
+        low[k] = std::min(low[k], at(order[i], k)), high[k] = std::max(high[k], at(order[i], k));
     int axis = 0;
     for (int k = 1; k < 3; ++k)
       if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
     const std::size_t middle = from + (to - from) / 2;
-    std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(from), order.begin() + static_cast<std::ptrdiff_t>(middle),
+    std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(from),
+                     order.begin() + static_cast<std::ptrdiff_t>(middle),
                      order.begin() + static_cast<std::ptrdiff_t>(to), [&](std::int32_t a, std::int32_t b) {
                        const double x = at(a, axis), y = at(b, axis);
                        return x != y ? x < y : a < b;
@@ -106,13 +110,15 @@ std::vector<std::int32_t> grow(const TetMesh& mesh, std::vector<char> marked, in
   return piece;
 }
 
-std::vector<char> change_pieces(TetMesh& mesh, std::size_t kept, const std::vector<std::int32_t>& piece, std::size_t count, int threads,
+std::vector<char> change_pieces(TetMesh& mesh, std::size_t kept, const std::vector<std::int32_t>& piece,
+                                std::size_t count, int threads,
                                 const std::function<void(std::size_t, ImproveMesh&)>& change) {
   std::vector<std::int32_t> owner(mesh.points.size(), kUnseen);
   std::vector<std::vector<std::int32_t>> tets(count);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (piece[t] >= 0) tets[piece[t]].push_back(static_cast<std::int32_t>(t));
-    for (const std::int32_t v : mesh.tets[t]) owner[v] = owner[v] == kUnseen || owner[v] == piece[t] ? piece[t] : kShared;
+    for (const std::int32_t v : mesh.tets[t])
+      owner[v] = owner[v] == kUnseen || owner[v] == piece[t] ? piece[t] : kShared;
   }
   std::vector<Piece> pieces(count);
   parallel_for(count, threads, [&](std::size_t i) {

@@ -20,7 +20,7 @@ constexpr double kRadians = 3.14159265358979323846 / 180;
 /// Tets below it are worked on longer.
 constexpr double kWorstDeg = 14;
 constexpr int kSearchRounds = 2;
-constexpr int kMostTries = 60;  // of the search, for each place
+constexpr int kMostTries = 60;                              // of the search, for each place
 constexpr std::size_t kAllTries = 2000, kAllTets = 150000;  // of all tries together; a try costs what its tets do
 constexpr std::size_t kLargestPlace = 4000;  // tets: where bad ones hang together over more, the surface is to blame
 
@@ -52,7 +52,8 @@ class Improver {
   std::vector<std::int32_t> worst_first() const {
     std::vector<std::int32_t> bad;
     for (std::size_t t = 0; t < m_.tets.size(); ++t)
-      if (m_.tets[t].alive() && m_.quality[t] < goal_ && m_.near_change(static_cast<std::int32_t>(t))) bad.push_back(static_cast<std::int32_t>(t));
+      if (m_.tets[t].alive() && m_.quality[t] < goal_ && m_.near_change(static_cast<std::int32_t>(t)))
+        bad.push_back(static_cast<std::int32_t>(t));
     std::sort(bad.begin(), bad.end(), [&](std::int32_t a, std::int32_t b) {
       return m_.quality[a] != m_.quality[b] ? m_.quality[a] < m_.quality[b] : a < b;
     });
@@ -97,8 +98,8 @@ class Improver {
 
 }  // namespace
 
-/// The worst tets of a small mesh: all changes that helped are used up, so some are made that do not, at random, and what
-/// follows from them. The best of all tries stays.
+/// The worst tets of a small mesh: all changes that helped are used up, so some are made that do not, at random, and
+/// what follows from them. The best of all tries stays.
 void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, ImproveCounts& counts) {
   constexpr int kShakes = 3, kPatience = 20;
   const double goal = std::sin(kWorstDeg * kRadians);
@@ -120,7 +121,9 @@ void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, Improve
     return static_cast<std::size_t>((state >> 33) % n);
   };
   auto worst = worst_of(mesh);
-  for (int attempt = 0, in_vain = 0; attempt < tries && in_vain < kPatience && !worst.empty() && std::chrono::steady_clock::now() < options.deadline; ++attempt) {
+  for (int attempt = 0, in_vain = 0;
+       attempt < tries && in_vain < kPatience && !worst.empty() && std::chrono::steady_clock::now() < options.deadline;
+       ++attempt) {
     ++in_vain;
     ImproveMesh tried = mesh;
     tried.begin_changes();  // what lies elsewhere was tried in vain
@@ -132,10 +135,18 @@ void search(ImproveMesh& mesh, const ImproveOptions& options, int tries, Improve
         if (const std::int32_t next = tried.tets[t].n[random(4)]; next >= 0) t = next;
       if (!tried.tets[t].alive()) continue;
       switch (random(4)) {
-        case 0: moves.remove_edge(t); break;
-        case 1: moves.remove_face(t); break;
-        case 2: moves.collapse(t); break;
-        default: moves.insert(t, goal, random(2) == 0); break;
+        case 0:
+          moves.remove_edge(t);
+          break;
+        case 1:
+          moves.remove_face(t);
+          break;
+        case 2:
+          moves.collapse(t);
+          break;
+        default:
+          moves.insert(t, goal, random(2) == 0);
+          break;
       }
     }
     ImproveCounts done;
@@ -155,10 +166,12 @@ void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options
   while (mesh.tets.size() / pieces > 2 * kPiece) pieces *= 2;
   const auto change = [&](const std::vector<std::int32_t>& piece, std::size_t count, const auto& with) {
     std::vector<ImproveCounts> done(count);
-    std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads, [&](std::size_t i, ImproveMesh& work) { with(work, done[i]); });
+    std::vector<char> shared = change_pieces(mesh, kept, piece, count, options.threads,
+                                             [&](std::size_t i, ImproveMesh& work) { with(work, done[i]); });
     for (const ImproveCounts& d : done) {
       counts.moved += d.moved, counts.edges += d.edges, counts.faces += d.faces;
-      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched, counts.steps += d.steps;
+      counts.collapsed += d.collapsed, counts.inserted += d.inserted, counts.searched += d.searched,
+          counts.steps += d.steps;
       counts.passes = std::max(counts.passes, d.passes);
     }
     return shared;
@@ -177,17 +190,22 @@ void improve_tets(TetMesh& mesh, std::size_t kept, const ImproveOptions& options
   std::size_t count = 0;
   const std::vector<char> cut = change(cut_into_pieces(mesh, static_cast<int>(pieces)), pieces, improve);
   if (pieces > 1) {
-    std::vector<std::int32_t> along =
-        grow(mesh, points_below(options.goal_deg, [&](const auto& t) { return cut[t[0]] || cut[t[1]] || cut[t[2]] || cut[t[3]]; }), 2, &count);
+    std::vector<std::int32_t> along = grow(
+        mesh,
+        points_below(options.goal_deg, [&](const auto& t) { return cut[t[0]] || cut[t[1]] || cut[t[2]] || cut[t[3]]; }),
+        2, &count);
     for (std::int32_t& p : along)
       if (p >= 0) p %= static_cast<std::int32_t>(pieces);
     change(along, pieces, improve);
   }
   // The fewer are left, the longer each is searched for.
   for (int round = 0; round < kSearchRounds; ++round) {
-    const std::vector<std::int32_t> worst = grow(mesh, points_below(kWorstDeg, [](const auto&) { return true; }), 3, &count);
-    const auto size = static_cast<std::size_t>(std::count_if(worst.begin(), worst.end(), [](std::int32_t piece) { return piece >= 0; }));
-    const int tries = count == 0 ? 0 : std::min({kMostTries, static_cast<int>(kAllTries / count), static_cast<int>(kAllTets / size)});
+    const std::vector<std::int32_t> worst =
+        grow(mesh, points_below(kWorstDeg, [](const auto&) { return true; }), 3, &count);
+    const auto size = static_cast<std::size_t>(
+        std::count_if(worst.begin(), worst.end(), [](std::int32_t piece) { return piece >= 0; }));
+    const int tries =
+        count == 0 ? 0 : std::min({kMostTries, static_cast<int>(kAllTries / count), static_cast<int>(kAllTets / size)});
     if (tries == 0 || size / count > kLargestPlace) break;
     const std::size_t before = counts.searched;
     change(worst, count, [&](ImproveMesh& work, ImproveCounts& done) { search(work, options, tries, done); });

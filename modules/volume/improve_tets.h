@@ -7,10 +7,12 @@
 namespace stackmesh::volume {
 
 struct ImproveOptions {
-  double goal_deg = 24;  ///< tets with a dihedral angle below it (or, at the other end, above 180 - goal / 0.6) are worked on
-  int passes = 10;       ///< at most
-  int threads = 0;       ///< 0: all of the machine; the result does not depend on it
-  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();  ///< then the mesh is left as it is by then
+  /// tets with a dihedral angle below it (or, at the other end, above 180 - goal / 0.6) are worked on
+  double goal_deg = 24;
+  int passes = 10;  ///< at most
+  int threads = 0;  ///< 0: all of the machine; the result does not depend on it
+  /// then the mesh is left as it is by then
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
 
 struct ImproveCounts {

@@ -73,11 +73,7 @@ std::string count_of(std::size_t n, const char* one, const char* many) {
 class Flood {
  public:
   Flood(const RawTets& raw, const TetMesh& mesh)
-      : raw_(raw),
-        faces_(mesh.faces),
-        count_(raw.corners.size() / 4),
-        labels_(count_, kUnknown),
-        walls_(count_, 0) {}
+      : raw_(raw), faces_(mesh.faces), count_(raw.corners.size() / 4), labels_(count_, kUnknown), walls_(count_, 0) {}
 
   Finding run() {
     seed();
@@ -122,8 +118,7 @@ class Flood {
       labels_[t] = label;
       queue_.push_back(static_cast<std::int32_t>(t));
     } else if (labels_[t] != label && finding_.message.empty()) {
-      finding_.message =
-          "a region is labelled both " + std::to_string(labels_[t]) + " and " + std::to_string(label);
+      finding_.message = "a region is labelled both " + std::to_string(labels_[t]) + " and " + std::to_string(label);
       if (wall >= 0) finding_.triangles.push_back(wall);
     }
   }
@@ -136,8 +131,7 @@ class Flood {
         if (walls_[t] & (1 << i)) continue;
         if (next < 0) {
           if (labels_[t] != 0) {
-            finding_.message =
-                "label " + std::to_string(labels_[t]) + " reaches the outside where it has no surface";
+            finding_.message = "label " + std::to_string(labels_[t]) + " reaches the outside where it has no surface";
             return;
           }
           continue;
@@ -167,9 +161,8 @@ class Flood {
         finding_.triangles.push_back(static_cast<std::int32_t>(i));
     }
     if (!finding_.triangles.empty())
-      finding_.message =
-          count_of(finding_.triangles.size(), "surface triangle was", "surface triangles were") +
-          " not kept as faces of the tetrahedra";
+      finding_.message = count_of(finding_.triangles.size(), "surface triangle was", "surface triangles were") +
+                         " not kept as faces of the tetrahedra";
   }
 
   const RawTets& raw_;
@@ -244,8 +237,7 @@ Finding check_closed(const InterfaceComplex& complex) {
     if (open > 0) finding.message = "the surface is open along " + count_of(open, "edge", "edges");
   }
   std::sort(finding.triangles.begin(), finding.triangles.end());
-  finding.triangles.erase(std::unique(finding.triangles.begin(), finding.triangles.end()),
-                          finding.triangles.end());
+  finding.triangles.erase(std::unique(finding.triangles.begin(), finding.triangles.end()), finding.triangles.end());
   return finding;
 }
 
@@ -295,7 +287,8 @@ Finding check_filled(const TetMesh& mesh, int threads) {
   if (const std::size_t n = std::accumulate(flat.begin(), flat.end(), std::size_t{0}); n > 0)
     return {count_of(n, "tetrahedron is", "tetrahedra are") + " flat or inverted", {}};
 
-  // Half faces by their smallest corner. `even`: the tet lies on the side to which the ascending corners turn their normal.
+  // Half faces by their smallest corner. `even`: the tet lies on the side to which the ascending corners turn their
+  // normal.
   struct Half {
     std::int32_t middle, high, triangle;  // -1: a tet's face
     Label label;
@@ -311,7 +304,8 @@ Finding check_filled(const TetMesh& mesh, int threads) {
   };
   const auto each = [&](auto visit) {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-      for (const auto& f : kFace) visit(half({mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]]}, mesh.labels[t], -1));
+      for (const auto& f : kFace)
+        visit(half({mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]]}, mesh.labels[t], -1));
     for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
       const InterfaceTriangle& f = mesh.faces[i];
       visit(half(f.v, f.above, static_cast<std::int32_t>(i)));
@@ -333,7 +327,10 @@ Finding check_filled(const TetMesh& mesh, int threads) {
     for (std::size_t p = chunk * kChunk; p < std::min(mesh.points.size(), (chunk + 1) * kChunk); ++p) {
       const auto from = halves.begin() + begin[p], to = halves.begin() + begin[p + 1];
       std::sort(from, to, [](const Half& a, const Half& b) {
-        return a.middle != b.middle ? a.middle < b.middle : a.high != b.high ? a.high < b.high : a.even != b.even ? a.even : a.triangle < b.triangle;
+        return a.middle != b.middle ? a.middle < b.middle
+               : a.high != b.high   ? a.high < b.high
+               : a.even != b.even   ? a.even
+                                    : a.triangle < b.triangle;
       });
       for (auto i = from, j = from; i != to; i = j) {
         int tets[2] = {0, 0}, walls = 0;
@@ -361,7 +358,8 @@ Finding check_filled(const TetMesh& mesh, int threads) {
   if (const std::size_t n = std::accumulate(loose.begin(), loose.end(), std::size_t{0}); n > 0)
     out.message = count_of(n, "face of the tetrahedra fits", "faces of the tetrahedra fit") + " to no other";
   else if (!out.triangles.empty())
-    out.message = count_of(out.triangles.size(), "surface triangle was", "surface triangles were") + " not kept as faces of the tetrahedra";
+    out.message = count_of(out.triangles.size(), "surface triangle was", "surface triangles were") +
+                  " not kept as faces of the tetrahedra";
   return out;
 }
 
@@ -385,8 +383,7 @@ std::map<Label, Volume> tet_volumes(const TetMesh& mesh) {
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
     const auto& t = mesh.tets[i];
     const Vec3 a = mesh.points[t[0]];
-    add(volumes[mesh.labels[i]],
-        dot(cross(mesh.points[t[1]] - a, mesh.points[t[2]] - a), mesh.points[t[3]] - a) / 6);
+    add(volumes[mesh.labels[i]], dot(cross(mesh.points[t[1]] - a, mesh.points[t[2]] - a), mesh.points[t[3]] - a) / 6);
   }
   return volumes;
 }

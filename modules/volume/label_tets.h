@@ -32,8 +32,8 @@ struct RawTets {
 /// agree. Tets of the background are dropped.
 Finding label_tets(RawTets raw, TetMesh& mesh);
 
-/// Is every tet positive (exactly), and every face of a tet either shared with one tet of its label, or one of mesh.faces with that
-/// label on that side? Is every side of mesh.faces that has a label the face of a tet?
+/// Is every tet positive (exactly), and every face of a tet either shared with one tet of its label, or one of
+/// mesh.faces with that label on that side? Is every side of mesh.faces that has a label the face of a tet?
 Finding check_filled(const TetMesh& mesh, int threads);
 
 struct Volume {

@@ -12,15 +12,16 @@
 namespace stackmesh::volume {
 namespace {
 
-constexpr double kFacing = 0.4;       // of the way to an outer face opposite, which may have a layer of its own
-constexpr double kOpposite = 0.7;     // of the way to any other face opposite
-constexpr double kRise = 0.6;         // of an edge: how much thicker a layer may be at its other end
-constexpr double kThinnest = 0.15;    // of the thickness: below it there is no layer
-constexpr double kSeen = 0.2;         // cosine between a column and the normals of the faces about it
-constexpr double kUpright = 0.3;      // the same of the elements' ends
-constexpr double kNarrower = 0.25;    // a face's inner end over the face, by area
-constexpr double kClear = 0.3;        // of the thickness, or an inner end's shortest edge: how far inner ends stay apart
-constexpr double kFolded = 0.9;       // cosine between inner ends at their common edge
+constexpr double kFacing = 0.4;     // of the way to an outer face opposite, which may have a layer of its own
+constexpr double kOpposite = 0.7;   // of the way to any other face opposite
+constexpr double kRise = 0.6;       // of an edge: how much thicker a layer may be at its other end
+constexpr double kThinnest = 0.15;  // of the thickness: below it there is no layer
+constexpr double kSeen = 0.2;       // cosine between a column and the normals of the faces about it
+constexpr double kUpright = 0.3;    // the same of the elements' ends
+constexpr double kNarrower = 0.25;  // a face's inner end over the face, by area
+// of the thickness, or an inner end's shortest edge: how far inner ends stay apart
+constexpr double kClear = 0.3;
+constexpr double kFolded = 0.9;  // cosine between inner ends at their common edge
 constexpr double kLess = 0.7;
 constexpr int kRounds = 200;
 constexpr std::size_t kChunk = 256;
@@ -41,7 +42,8 @@ double hit(const Vec3& from, const Vec3& ray, const Vec3& a, const Vec3& b, cons
 
 class ColumnFinder {
  public:
-  ColumnFinder(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces, Label label, const LayerSize& size, int threads)
+  ColumnFinder(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces, Label label,
+               const LayerSize& size, int threads)
       : points_(points), faces_(faces), label_(label), size_(size), threads_(threads) {}
 
   Columns run() {
@@ -61,7 +63,9 @@ class ColumnFinder {
   }
 
  private:
-  bool is_outer(const InterfaceTriangle& f) const { return (f.below == label_ && f.above == 0) || (f.below == 0 && f.above == label_); }
+  bool is_outer(const InterfaceTriangle& f) const {
+    return (f.below == label_ && f.above == 0) || (f.below == 0 && f.above == label_);
+  }
 
   /// Outer faces with their normals, all faces of the label, the corners of outer faces with their neighbours.
   void collect() {
@@ -171,7 +175,8 @@ class ColumnFinder {
     for (const std::int32_t v : corners_)
       for (const std::int32_t w : neighbours_[v]) length += norm(points_[w] - points_[v]), ++count;
     if (count == 0) return;
-    const int passes = std::min(10, static_cast<int>(std::ceil(2 * size_.thickness_mm * static_cast<double>(count) / length)));
+    const int passes =
+        std::min(10, static_cast<int>(std::ceil(2 * size_.thickness_mm * static_cast<double>(count) / length)));
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<Vec3> next(corners_.size());
       for (std::size_t i = 0; i < corners_.size(); ++i) {
@@ -180,7 +185,8 @@ class ColumnFinder {
         const Vec3 own = unit(out_.way[v]);
         if (norm(own) == 0 || least_cosine(v, own) < 0.85) continue;  // on a ridge
         Vec3 sum = own;
-        for (const std::int32_t w : neighbours_[v]) sum = sum + (1.0 / static_cast<double>(neighbours_[v].size())) * unit(out_.way[w]);
+        for (const std::int32_t w : neighbours_[v])
+          sum = sum + (1.0 / static_cast<double>(neighbours_[v].size())) * unit(out_.way[w]);
         if (const Vec3 way = unit(sum); least_cosine(v, way) >= 0.8) next[i] = measured(v, way);
       }
       for (std::size_t i = 0; i < corners_.size(); ++i) out_.way[corners_[i]] = next[i];
@@ -205,7 +211,9 @@ class ColumnFinder {
         for (const std::int32_t b : near) {
           const InterfaceTriangle& f = faces_[bound_[b]];
           if (f.v[0] == v || f.v[1] == v || f.v[2] == v) continue;
-          const double room = (is_outer(f) ? kFacing : kOpposite) * hit(points_[v], ray, points_[f.v[0]], points_[f.v[1]], points_[f.v[2]]) / norm(out_.way[v]);
+          const double room = (is_outer(f) ? kFacing : kOpposite) *
+                              hit(points_[v], ray, points_[f.v[0]], points_[f.v[1]], points_[f.v[2]]) /
+                              norm(out_.way[v]);
           if (room < out_.thickness[v]) out_.thickness[v] = room, out_.why[v] = LayerLimit::room;
         }
       }
@@ -218,7 +226,8 @@ class ColumnFinder {
     if (out_.why[v] == LayerLimit::none) out_.why[v] = LayerLimit::beside;
   }
 
-  /// Thickness rises gently from where it is small; what is very thin, or stands alone, is given up; until nothing changes.
+  /// Thickness rises gently from where it is small; what is very thin, or stands alone, is given up; until nothing
+  /// changes.
   void settle() {
     for (bool again = true; again;) {
       again = false;
@@ -227,7 +236,9 @@ class ColumnFinder {
         if (out_.thickness[v] > 0 && out_.thickness[v] < kThinnest * size_.thickness_mm) give_up(v), again = true;
       for (const std::int32_t v : corners_) {
         if (out_.thickness[v] == 0) continue;
-        if (std::none_of(neighbours_[v].begin(), neighbours_[v].end(), [&](std::int32_t w) { return out_.thickness[w] > 0; })) give_up(v), again = true;
+        if (std::none_of(neighbours_[v].begin(), neighbours_[v].end(),
+                         [&](std::int32_t w) { return out_.thickness[w] > 0; }))
+          give_up(v), again = true;
       }
     }
   }
@@ -252,10 +263,14 @@ class ColumnFinder {
     }
   }
 
-  Vec3 level(std::int32_t v, int k) const { return level_of_column(points_[v], out_.way[v], out_.thickness[v], k, size_.count); }
+  Vec3 level(std::int32_t v, int k) const {
+    return level_of_column(points_[v], out_.way[v], out_.thickness[v], k, size_.count);
+  }
   Vec3 foot(std::int32_t v) const { return level(v, size_.count); }
 
-  bool has_changed(const InterfaceTriangle& f) const { return changed_[f.v[0]] || changed_[f.v[1]] || changed_[f.v[2]]; }
+  bool has_changed(const InterfaceTriangle& f) const {
+    return changed_[f.v[0]] || changed_[f.v[1]] || changed_[f.v[2]];
+  }
 
   /// Are a face's elements sound, and not too flat?
   bool stands(const InterfaceTriangle& face) const {
@@ -283,7 +298,8 @@ class ColumnFinder {
       if (has_changed(faces_[i])) active.push_back(i);
     std::vector<char> bad(faces_.size(), 0);
     parallel_for((active.size() + kChunk - 1) / kChunk, threads_, [&](std::size_t chunk) {
-      for (std::size_t i = chunk * kChunk; i < std::min(active.size(), (chunk + 1) * kChunk); ++i) bad[active[i]] = !stands(faces_[active[i]]);
+      for (std::size_t i = chunk * kChunk; i < std::min(active.size(), (chunk + 1) * kChunk); ++i)
+        bad[active[i]] = !stands(faces_[active[i]]);
     });
     if (std::none_of(bad.begin(), bad.end(), [](char b) { return b != 0; })) find_crossings(active, bad);
     std::fill(changed_.begin(), changed_.end(), 0);
@@ -342,7 +358,8 @@ class ColumnFinder {
         for (const std::int32_t j : near) {
           if (j == i) continue;
           const double gap = clear[j] > 0 ? std::min(clear[i], clear[j]) : clear[i];
-          if (too_near(ids[i], at[i], ids[j], at[j], bound_[i], bound_[j], gap)) found[chunk].push_back(i), found[chunk].push_back(j);
+          if (too_near(ids[i], at[i], ids[j], at[j], bound_[i], bound_[j], gap))
+            found[chunk].push_back(i), found[chunk].push_back(j);
         }
       }
     });
@@ -350,10 +367,11 @@ class ColumnFinder {
       for (const std::int32_t i : list) bad[bound_[i]] = 1;
   }
 
-  bool too_near(const std::array<std::int32_t, 3>& si, const Corners3& s, const std::array<std::int32_t, 3>& ti, const Corners3& t, std::int32_t face_s, std::int32_t face_t,
-                double gap) const {
+  bool too_near(const std::array<std::int32_t, 3>& si, const Corners3& s, const std::array<std::int32_t, 3>& ti,
+                const Corners3& t, std::int32_t face_s, std::int32_t face_t, double gap) const {
     const SharedCorners shared = shared_corners(si, ti);
-    if (shared.count == 0) return !certainly_apart(s, t, gap) && (triangles_meet(s, t, shared) || squared_distance(s, t) < gap * gap);
+    if (shared.count == 0)
+      return !certainly_apart(s, t, gap) && (triangles_meet(s, t, shared) || squared_distance(s, t) < gap * gap);
     if (triangles_meet(s, t, shared)) return true;
     if (shared.count != 2) return false;
     const double cosine = sheet_cosine(s, t, shared);
@@ -395,17 +413,21 @@ LayerFace layer_face(const InterfaceTriangle& face, const std::vector<double>& t
 }
 
 bool sheet_is_positive(const std::array<Vec3, 3>& low, const std::array<Vec3, 3>& high, int columns) {
-  const auto positive = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return orientation(a, b, c, d) > 0; };
+  const auto positive = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return orientation(a, b, c, d) > 0;
+  };
   const auto& [a, b, c] = low;
   const auto& [d, e, f] = high;  // over a, b, c
   if (columns == 1) return positive(a, b, c, d);
   if (columns == 2) return positive(a, b, c, d) && positive(a, b, c, e) && positive(d, c, e, a) && positive(d, c, e, b);
   // All tets of four corners but the three sides: those at the corners, and those of an edge below and one above.
-  return positive(a, b, c, d) && positive(a, b, c, e) && positive(a, b, c, f) && positive(d, f, e, a) && positive(d, f, e, b) && positive(d, f, e, c) &&
-         positive(a, b, f, d) && positive(a, b, f, e) && positive(b, c, d, e) && positive(b, c, d, f) && positive(c, a, e, f) && positive(c, a, e, d);
+  return positive(a, b, c, d) && positive(a, b, c, e) && positive(a, b, c, f) && positive(d, f, e, a) &&
+         positive(d, f, e, b) && positive(d, f, e, c) && positive(a, b, f, d) && positive(a, b, f, e) &&
+         positive(b, c, d, e) && positive(b, c, d, f) && positive(c, a, e, f) && positive(c, a, e, d);
 }
 
-Columns find_columns(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces, Label label, const LayerSize& size, int threads) {
+Columns find_columns(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces, Label label,
+                     const LayerSize& size, int threads) {
   return ColumnFinder(points, faces, label, size, threads).run();
 }
 

@@ -4,7 +4,8 @@
 
 namespace stackmesh::volume {
 
-LayerLevels::LayerLevels(const TetMesh& mesh) : top(mesh.points.size()), share(mesh.points.size(), 1), any(!mesh.wedges.empty()) {
+LayerLevels::LayerLevels(const TetMesh& mesh)
+    : top(mesh.points.size()), share(mesh.points.size(), 1), any(!mesh.wedges.empty()) {
   std::iota(top.begin(), top.end(), 0);
   if (!any) return;
   std::vector<std::int32_t> over(mesh.points.size(), -1), under(mesh.points.size(), -1);

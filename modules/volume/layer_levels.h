@@ -6,10 +6,12 @@
 
 namespace stackmesh::volume {
 
-/// How points of layers follow the surface they hang on: those of a column by the share of it that lies between them and its foot.
+/// How points of layers follow the surface they hang on: those of a column by the share of it that lies between them
+/// and its foot.
 struct LayerLevels {
-  std::vector<std::int32_t> top;  ///< of each point: the point of the surface over it; the point itself where it is in no column
-  std::vector<double> share;      ///< 1 on the surface (and in no column), 0 at a foot
+  /// of each point: the point of the surface over it; the point itself where it is in no column
+  std::vector<std::int32_t> top;
+  std::vector<double> share;  ///< 1 on the surface (and in no column), 0 at a foot
   bool any = false;
 
   explicit LayerLevels(const TetMesh& mesh);

@@ -24,7 +24,8 @@ struct Determinant {
   double volume;     // the element's
 };
 
-/// From the Bernstein coefficients of an element's Jacobian determinant: their smallest bounds it, their mean is its mean.
+/// From the Bernstein coefficients of an element's Jacobian determinant: their smallest bounds it, their mean is its
+/// mean.
 Determinant determinant_of(const std::array<Vec3, 4>& corner, const std::array<Vec3, 6>& mid) {
   static constexpr int kMid[4][4] = {{-1, 0, 2, 3}, {0, -1, 1, 4}, {2, 1, -1, 5}, {3, 4, 5, -1}};
   // Gradients at the corners: they are linear in between.
@@ -45,14 +46,16 @@ Determinant determinant_of(const std::array<Vec3, 4>& corner, const std::array<V
   for (int i = 0; i < 4; ++i)
     for (int j = i; j < 4; ++j)
       for (int k = j; k < 4; ++k) {
-        const double coefficient = (term(i, j, k) + term(i, k, j) + term(j, i, k) + term(j, k, i) + term(k, i, j) + term(k, j, i)) / 6;
+        const double coefficient =
+            (term(i, j, k) + term(i, k, j) + term(j, i, k) + term(j, k, i) + term(k, i, j) + term(k, j, i)) / 6;
         smallest = std::min(smallest, coefficient);
         sum += coefficient;
       }
   return {smallest / straight, sum / 20 / 6};
 }
 
-/// Of a wedge: the smallest determinant at its nodes and integration points over the straight one's there, and its volume.
+/// Of a wedge: the smallest determinant at its nodes and integration points over the straight one's there, and its
+/// volume.
 Determinant determinant_of_wedge(const WedgeNodes& nodes, bool pyramid) {
   static const std::vector<WedgePlace> places[2] = {wedge_check_places(false), wedge_check_places(true)};
   WedgeNodes straight = nodes;
@@ -67,7 +70,8 @@ Determinant determinant_of_wedge(const WedgeNodes& nodes, bool pyramid) {
 
 class Raiser {
  public:
-  Raiser(TetMesh mesh, const OrderOptions& options) : o_(options), edges_(mesh), levels_(mesh), mesh_(std::move(mesh)) {}
+  Raiser(TetMesh mesh, const OrderOptions& options)
+      : o_(options), edges_(mesh), levels_(mesh), mesh_(std::move(mesh)) {}
 
   OrderResult run() {
     OrderResult result;
@@ -77,9 +81,11 @@ class Raiser {
       for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
         const auto& v = mesh_.tets[t];
         const Vec3 a = mesh_.points[v[0]];
-        volumes[mesh_.labels[t]] += dot(mesh_.points[v[1]] - a, cross(mesh_.points[v[2]] - a, mesh_.points[v[3]] - a)) / 6;
+        volumes[mesh_.labels[t]] +=
+            dot(mesh_.points[v[1]] - a, cross(mesh_.points[v[2]] - a, mesh_.points[v[3]] - a)) / 6;
       }
-    for (std::size_t w = 0; w < mesh_.wedges.size() && o_.volumes_restored; ++w) volumes[mesh_.labels[mesh_.tets.size() + w]] += wedge_volume(wedge_nodes(mesh_, w));
+    for (std::size_t w = 0; w < mesh_.wedges.size() && o_.volumes_restored; ++w)
+      volumes[mesh_.labels[mesh_.tets.size() + w]] += wedge_volume(wedge_nodes(mesh_, w));
     if (o_.follow_surface) {
       const volume::SurfaceCurves curves(mesh_, edges_, o_.ridge_deg);
       curves.each_offset([&](std::int64_t edge, Vec3 offset) { ways.emplace_back(edge, offset); });
@@ -120,8 +126,8 @@ class Raiser {
     parallel_for((mesh_.tets.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
       for (std::size_t t = chunk * kChunk; t < std::min(mesh_.tets.size(), (chunk + 1) * kChunk); ++t)
         for (int k = 0; k < 6; ++k)
-          mesh_.mid[t][k] =
-              first_ + static_cast<std::int32_t>(edges_.find(mesh_.tets[t][kTetEdges[k][0]], mesh_.tets[t][kTetEdges[k][1]]));
+          mesh_.mid[t][k] = first_ + static_cast<std::int32_t>(
+                                         edges_.find(mesh_.tets[t][kTetEdges[k][0]], mesh_.tets[t][kTetEdges[k][1]]));
     });
   }
 
@@ -141,13 +147,15 @@ class Raiser {
 
   Vec3 middle(std::int32_t p, std::int32_t q) const { return 0.5 * (mesh_.points[p] + mesh_.points[q]); }
 
-  /// Moves the corners by -off; where a tet would lose more than three tenths of its volume its corners move half as far, and so on.
+  /// Moves the corners by -off; where a tet would lose more than three tenths of its volume its corners move half as
+  /// far, and so on.
   std::size_t draw_in(std::vector<Vec3> off) {
     const std::vector<Vec3> from = mesh_.points;
     std::vector<double> share(from.size(), 1);  // of points of columns: that of their top counts
     std::vector<std::int32_t> suspects;
     for (std::size_t v = 0; v < off.size(); ++v)
-      if (const std::int32_t top = levels_.top[v]; levels_.hangs(static_cast<std::int32_t>(v))) off[v] = levels_.share[v] * off[top];
+      if (const std::int32_t top = levels_.top[v]; levels_.hangs(static_cast<std::int32_t>(v)))
+        off[v] = levels_.share[v] * off[top];
     const auto moves = [&](std::int32_t v) { return share[levels_.top[v]] > 0 && dot(off[v], off[v]) > 0; };
     const auto any_of = [&](std::int32_t t, auto test) {
       bool any = false;
@@ -164,7 +172,8 @@ class Raiser {
       for (const std::int32_t t : suspects)
         if (any_of(t, moves) && !keeps_volume(from, t)) {
           any = true;
-          each_corner(mesh_, static_cast<std::size_t>(t), [&](std::int32_t v) { less[levels_.top[v]] = less[levels_.top[v]] || moves(v); });
+          each_corner(mesh_, static_cast<std::size_t>(t),
+                      [&](std::int32_t v) { less[levels_.top[v]] = less[levels_.top[v]] || moves(v); });
         }
       if (!any) break;
       for (std::size_t v = 0; v < from.size(); ++v)
@@ -184,7 +193,9 @@ class Raiser {
   bool keeps_volume(const std::vector<Vec3>& from, std::int32_t element) const {
     constexpr double kKept = 0.7;
     const auto keeps = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
-      const auto determinant = [&](const std::vector<Vec3>& p) { return dot(p[b] - p[a], cross(p[c] - p[a], p[d] - p[a])); };
+      const auto determinant = [&](const std::vector<Vec3>& p) {
+        return dot(p[b] - p[a], cross(p[c] - p[a], p[d] - p[a]));
+      };
       return determinant(mesh_.points) >= kKept * determinant(from);
     };
     if (!mesh_.is_wedge(static_cast<std::size_t>(element))) {
@@ -208,16 +219,20 @@ class Raiser {
     }
     share_.assign(bent_.size(), 1);
     for (std::size_t t = 0; t < mesh_.elements(); ++t)
-      if (any_mid(static_cast<std::int32_t>(t), [&](std::int32_t b) { return b >= 0; })) curved_tets_.push_back(static_cast<std::int32_t>(t));
+      if (any_mid(static_cast<std::int32_t>(t), [&](std::int32_t b) { return b >= 0; }))
+        curved_tets_.push_back(static_cast<std::int32_t>(t));
   }
 
   /// True when the test holds for a mid-side node of an element, given its place among the bent ones (-1: straight).
   template <class Test>
   bool any_mid(std::int32_t element, Test test) const {
     const auto tet = static_cast<std::size_t>(element);
-    if (!mesh_.is_wedge(tet)) return std::any_of(mesh_.mid[tet].begin(), mesh_.mid[tet].end(), [&](std::int32_t m) { return test(bent_of_[m - first_]); });
+    if (!mesh_.is_wedge(tet))
+      return std::any_of(mesh_.mid[tet].begin(), mesh_.mid[tet].end(),
+                         [&](std::int32_t m) { return test(bent_of_[m - first_]); });
     const auto& mid = mesh_.wedge_mid[tet - mesh_.tets.size()];
-    return std::any_of(mid.begin(), mid.end(), [&](std::int32_t m) { return m >= first_ && test(bent_of_[m - first_]); });
+    return std::any_of(mid.begin(), mid.end(),
+                       [&](std::int32_t m) { return m >= first_ && test(bent_of_[m - first_]); });
   }
 
   Determinant determinant_of_element(std::int32_t tet) const {
@@ -264,8 +279,8 @@ class Raiser {
     for (const std::int32_t t : curved_tets_) bound_ = std::min(bound_, bounds[t]);
   }
 
-  /// What each label still holds too much or too little is given to its curved sides, all nodes of a side between two labels
-  /// moving by the same along their normals. Nodes stay in planes across an axis.
+  /// What each label still holds too much or too little is given to its curved sides, all nodes of a side between two
+  /// labels moving by the same along their normals. Nodes stay in planes across an axis.
   void give_back_volumes(const std::map<Label, double>& wanted) {
     std::vector<double> held(mesh_.elements());
     parallel_for((held.size() + kChunk - 1) / kChunk, o_.threads, [&](std::size_t chunk) {
@@ -310,7 +325,8 @@ class Raiser {
       if (planes[v] & 4) shift[v].z = 0;
     }
     for (std::size_t v = 0; v < shift.size(); ++v)
-      if (const std::int32_t top = levels_.top[v]; levels_.hangs(static_cast<std::int32_t>(v))) shift[v] = levels_.share[v] * shift[top];
+      if (const std::int32_t top = levels_.top[v]; levels_.hangs(static_cast<std::int32_t>(v)))
+        shift[v] = levels_.share[v] * shift[top];
     const std::vector<Vec3> before = mesh_.points;
     for (double share = 1; share > 0.1; share /= 2) {
       for (std::int32_t p = 0; p < first_; ++p) {
@@ -336,17 +352,18 @@ class Raiser {
   const volume::ElementEdges edges_;
   const volume::LayerLevels levels_;
   TetMesh mesh_;
-  std::int32_t first_ = 0;              // mid-side node of edge 0
-  std::vector<std::int32_t> bent_of_;   // of an edge, -1: straight
-  std::vector<std::int32_t> bent_;      // edges
+  std::int32_t first_ = 0;             // mid-side node of edge 0
+  std::vector<std::int32_t> bent_of_;  // of an edge, -1: straight
+  std::vector<std::int32_t> bent_;     // edges
   std::vector<Vec3> straight_, offsets_;
-  std::vector<double> share_;           // of the offset
+  std::vector<double> share_;              // of the offset
   std::vector<std::int32_t> curved_tets_;  // elements
   double bound_ = 1;
 };
 
 void check_input(const TetMesh& mesh, const OrderOptions& options) {
-  if (!mesh.mid.empty()) fail_input("the elements are of second order already", "tetrahedral mesh", "leave it as it is");
+  if (!mesh.mid.empty())
+    fail_input("the elements are of second order already", "tetrahedral mesh", "leave it as it is");
   const auto count = static_cast<std::int64_t>(mesh.points.size());
   const auto fine = [&](std::int32_t v) { return v >= 0 && v < count; };
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -354,12 +371,14 @@ void check_input(const TetMesh& mesh, const OrderOptions& options) {
       fail_input("a tet names a point that does not exist", "tet " + std::to_string(t), "write the mesh again");
   for (std::size_t t = mesh.tets.size(); t < mesh.elements(); ++t)
     each_corner(mesh, t, [&](std::int32_t v) {
-      if (!fine(v)) fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
+      if (!fine(v))
+        fail_input("a wedge names a point that does not exist", "element " + std::to_string(t), "write the mesh again");
     });
   for (std::size_t t = 0; t < mesh.faces.size(); ++t)
     if (!std::all_of(mesh.faces[t].v.begin(), mesh.faces[t].v.end(), fine))
       fail_input("a face names a point that does not exist", "face " + std::to_string(t), "write the mesh again");
-  if (!(options.jacobian_rel > 0 && options.jacobian_rel < 1)) fail_internal("jacobian_rel is not between 0 and 1", "raise_order");
+  if (!(options.jacobian_rel > 0 && options.jacobian_rel < 1))
+    fail_internal("jacobian_rel is not between 0 and 1", "raise_order");
 }
 
 }  // namespace

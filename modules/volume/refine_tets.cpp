@@ -57,7 +57,8 @@ class Refiner {
     // Nodes 4 to 9 lie on edges 01 12 02 03 13 23. Corners, then the octahedron about one of its three diagonals.
     static constexpr int corners[4][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}};
     static constexpr int diagonals[3][2] = {{4, 9}, {5, 7}, {6, 8}};
-    static constexpr int rings[3][4] = {{5, 6, 7, 8}, {4, 8, 9, 6}, {4, 5, 9, 7}};  // about the diagonal, neighbours in turn
+    // about the diagonal, neighbours in turn
+    static constexpr int rings[3][4] = {{5, 6, 7, 8}, {4, 8, 9, 6}, {4, 5, 9, 7}};
     for (const auto& c : corners) add(t, node, place, {c[0], c[1], c[2], c[3]});
     int shortest = 0;
     double least = 0;
@@ -69,13 +70,16 @@ class Refiner {
       }
     }
     const auto& ring = rings[shortest];
-    for (int k = 0; k < 4; ++k) add(t, node, place, {diagonals[shortest][0], diagonals[shortest][1], ring[k], ring[(k + 1) % 4]});
+    for (int k = 0; k < 4; ++k)
+      add(t, node, place, {diagonals[shortest][0], diagonals[shortest][1], ring[k], ring[(k + 1) % 4]});
   }
 
-  void add(std::size_t t, const std::array<std::int32_t, 10>& node, const std::array<Place, 10>& place, std::array<int, 4> c) {
+  void add(std::size_t t, const std::array<std::int32_t, 10>& node, const std::array<Place, 10>& place,
+           std::array<int, 4> c) {
     // Turned by the places within the tet, where it is a straight one: the sign is exact.
     const auto d = [&](int k, int axis) { return place[c[k]][axis + 1] - place[c[0]][axis + 1]; };
-    const int det = d(1, 0) * (d(2, 1) * d(3, 2) - d(2, 2) * d(3, 1)) - d(1, 1) * (d(2, 0) * d(3, 2) - d(2, 2) * d(3, 0)) +
+    const int det = d(1, 0) * (d(2, 1) * d(3, 2) - d(2, 2) * d(3, 1)) -
+                    d(1, 1) * (d(2, 0) * d(3, 2) - d(2, 2) * d(3, 0)) +
                     d(1, 2) * (d(2, 0) * d(3, 1) - d(2, 1) * d(3, 0));
     if (det < 0) std::swap(c[2], c[3]);
     out_.tets.push_back({node[c[0]], node[c[1]], node[c[2]], node[c[3]]});
@@ -101,7 +105,8 @@ class Refiner {
   void cut(const InterfaceTriangle& f) {
     std::array<std::int32_t, 3> m;
     for (int k = 0; k < 3; ++k) m[k] = middle_of(f.v[k], f.v[(k + 1) % 3]);
-    const std::array<std::int32_t, 3> parts[4] = {{f.v[0], m[0], m[2]}, {m[0], f.v[1], m[1]}, {m[2], m[1], f.v[2]}, {m[0], m[1], m[2]}};
+    const std::array<std::int32_t, 3> parts[4] = {
+        {f.v[0], m[0], m[2]}, {m[0], f.v[1], m[1]}, {m[2], m[1], f.v[2]}, {m[0], m[1], m[2]}};
     for (const auto& v : parts) {
       InterfaceTriangle part = f;
       part.v = v;

@@ -14,7 +14,7 @@
 namespace stackmesh::volume {
 namespace {
 
-constexpr double kReach = 0.15;     // of the mean length of the surface's edges at a point: how far it may go
+constexpr double kReach = 0.15;        // of the mean length of the surface's edges at a point: how far it may go
 constexpr double kVolumeShare = 1e-3;  // of a label's volume: how much it may change in all
 constexpr int kPasses = 12;
 constexpr std::size_t kFew = 100;   // tets, or one in a thousand, are worked on at most
@@ -23,7 +23,8 @@ constexpr double kNarrow_deg = 20;  // triangles do not get narrower than this, 
 
 class Relaxation {
  public:
-  Relaxation(TetMesh& mesh, std::size_t kept, double goal_deg, bool outer) : m_(mesh), kept_(kept), goal_(std::sin(goal_deg * M_PI / 180)), outer_(outer) {}
+  Relaxation(TetMesh& mesh, std::size_t kept, double goal_deg, bool outer)
+      : m_(mesh), kept_(kept), goal_(std::sin(goal_deg * M_PI / 180)), outer_(outer) {}
 
   std::vector<std::int32_t> run() {
     find_bad();
@@ -69,7 +70,8 @@ class Relaxation {
   void find_bad() {
     bad_.clear();
     for (std::size_t t = 0; t < m_.tets.size(); ++t)
-      if (const double q = quality_of(static_cast<std::int32_t>(t)); q < goal_) bad_.emplace_back(q, static_cast<std::int32_t>(t));
+      if (const double q = quality_of(static_cast<std::int32_t>(t)); q < goal_)
+        bad_.emplace_back(q, static_cast<std::int32_t>(t));
     std::sort(bad_.begin(), bad_.end());
   }
 
@@ -98,8 +100,8 @@ class Relaxation {
     return out;
   }
 
-  /// True if the outer faces of v stay clear of all others when it goes to `to`: by going inwards; or by going less far than others are away, so
-  /// that none can be passed, and by meeting no face with a common corner (exactly).
+  /// True if the outer faces of v stay clear of all others when it goes to `to`: by going inwards; or by going less far
+  /// than others are away, so that none can be passed, and by meeting no face with a common corner (exactly).
   bool keeps_apart(std::int32_t v, const Vec3& to, const std::vector<OuterFace>& outer) {
     const Vec3 from = m_.points[v];
     const bool inwards = std::all_of(outer.begin(), outer.end(), [&](const OuterFace& f) {
@@ -116,14 +118,21 @@ class Relaxation {
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
       }
     for (const InterfaceTriangle& other : m_.faces) {
-      if (other.below != 0 && other.above != 0 && filled_.count(other.below) && filled_.count(other.above)) continue;  // tets on both sides
+      // tets on both sides
+      if (other.below != 0 && other.above != 0 && filled_.count(other.below) && filled_.count(other.above)) continue;
       const Corners3 t = places(other.v, v, to);
-      const auto beyond = [&](double x, double y, double z, double l, double h) { return (x < l - way && y < l - way && z < l - way) || (x > h + way && y > h + way && z > h + way); };
-      if (beyond(t[0].x, t[1].x, t[2].x, low.x, high.x) || beyond(t[0].y, t[1].y, t[2].y, low.y, high.y) || beyond(t[0].z, t[1].z, t[2].z, low.z, high.z)) continue;
+      const auto beyond = [&](double x, double y, double z, double l, double h) {
+        return (x < l - way && y < l - way && z < l - way) || (x > h + way && y > h + way && z > h + way);
+      };
+      if (beyond(t[0].x, t[1].x, t[2].x, low.x, high.x) || beyond(t[0].y, t[1].y, t[2].y, low.y, high.y) ||
+          beyond(t[0].z, t[1].z, t[2].z, low.z, high.z))
+        continue;
       for (const OuterFace& f : outer) {
         const SharedCorners shared = shared_corners(f.corners, other.v);
         if (shared.count == 3) continue;
-        if (shared.count > 0 ? triangles_meet(places(f.corners, v, to), t, shared) : squared_distance(places(f.corners, v, from), t) < way * way) return false;
+        if (shared.count > 0 ? triangles_meet(places(f.corners, v, to), t, shared)
+                             : squared_distance(places(f.corners, v, from), t) < way * way)
+          return false;
       }
     }
     return true;
@@ -134,7 +143,8 @@ class Relaxation {
   /// Moves v, unless a label's volume would change by more than its share with all that moved before.
   bool keep_volumes(std::int32_t v, const Vec3& to, const std::vector<std::int32_t>& tets) {
     std::map<Label, double> change;
-    for (std::size_t i = 0; i < tets.size(); ++i) change[m_.labels[tets[i]]] += volume(fan_[i], to) - volume(fan_[i], m_.points[v]);
+    for (std::size_t i = 0; i < tets.size(); ++i)
+      change[m_.labels[tets[i]]] += volume(fan_[i], to) - volume(fan_[i], m_.points[v]);
     for (const auto& [label, mm3] : change)
       if (std::abs(changed_[label] + mm3) > kVolumeShare * volumes_.at(label).mm3) return false;
     for (const auto& [label, mm3] : change) changed_[label] += mm3;
@@ -172,7 +182,8 @@ class Relaxation {
         const auto& c = m_.faces[f].v;
         const int k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
         const std::int32_t a = c[(k + 1) % 3], b = c[(k + 2) % 3];
-        length += 0.5 * (norm(m_.points[a] - from) + norm(m_.points[b] - from)) / static_cast<double>(faces->second.size());
+        length +=
+            0.5 * (norm(m_.points[a] - from) + norm(m_.points[b] - from)) / static_cast<double>(faces->second.size());
         narrowest = std::min(narrowest, smallest_angle(from, m_.points[a], m_.points[b]));
         int sides = 0;
         std::int32_t beside = -1;

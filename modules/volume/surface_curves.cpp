@@ -13,7 +13,9 @@ Vec3 unit(Vec3 v) {
   return length > 0 ? (1 / length) * v : Vec3{};
 }
 
-int corner(const InterfaceTriangle& t, std::int32_t v) { return t.v[0] == v ? 0 : t.v[1] == v ? 1 : 2; }
+int corner(const InterfaceTriangle& t, std::int32_t v) {
+  return t.v[0] == v ? 0 : t.v[1] == v ? 1 : 2;
+}
 
 }  // namespace
 
@@ -125,7 +127,8 @@ void SurfaceCurves::classify() {
                       std::max(s.below, s.above) == std::max(t.below, t.above);
     const double cosine = dot(normals_[e.side[0]], normals_[e.side[1]]);
     if (same && planes_[e.side[0]] != 0 && planes_[e.side[0]] == planes_[e.side[1]]) e.kind = Kind::straight;
-    else if (same && planes_[e.side[0]] == 0 && planes_[e.side[1]] == 0 && cosine >= ridge_cosine_) e.kind = Kind::smooth;
+    else if (same && planes_[e.side[0]] == 0 && planes_[e.side[1]] == 0 && cosine >= ridge_cosine_)
+      e.kind = Kind::smooth;
   }
 }
 
@@ -181,7 +184,8 @@ void SurfaceCurves::collect_tangents() {
   tangents_.assign(mesh_.points.size(), Vec3{});
   for (std::size_t v = 0; v < ends.size(); ++v) {
     if (ends[v].count != 2) continue;
-    const Vec3 back = mesh_.points[v] - mesh_.points[ends[v].other[0]], on = mesh_.points[ends[v].other[1]] - mesh_.points[v];
+    const Vec3 back = mesh_.points[v] - mesh_.points[ends[v].other[0]],
+               on = mesh_.points[ends[v].other[1]] - mesh_.points[v];
     if (dot(unit(back), unit(on)) < ridge_cosine_) continue;
     const double a = norm(back), b = norm(on);  // the circle's tangent: the nearer neighbour counts more
     tangents_[v] = unit(b * unit(back) + a * unit(on));
@@ -194,7 +198,9 @@ Vec3 SurfaceCurves::across(const SurfaceEdge& e, Vec3 d) const {
   const Vec3 n = sheet_normals_[parent_[3 * e.side[0] + corner(t, e.p)]];
   const Vec3 m = sheet_normals_[parent_[3 * e.side[0] + corner(t, e.q)]];
   const double length = norm(d);
-  const auto half_tangent = [&](Vec3 normal) { return std::tan(std::asin(std::clamp(dot(d, normal) / length, -0.9, 0.9)) / 2); };
+  const auto half_tangent = [&](Vec3 normal) {
+    return std::tan(std::asin(std::clamp(dot(d, normal) / length, -0.9, 0.9)) / 2);
+  };
   return (length / 4 * (half_tangent(m) - half_tangent(n))) * unit(n + m);
 }
 

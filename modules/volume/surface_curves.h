@@ -33,18 +33,18 @@ class SurfaceCurves {
     }
   }
 
-  /// How far each point stands off the smooth surface if the flat triangles around it hold the right volume: the mean height
-  /// of the surface over a triangle is that of an arc over its edges, averaged over their directions; of a curve over its
-  /// chord, two thirds of the largest.
+  /// How far each point stands off the smooth surface if the flat triangles around it hold the right volume: the mean
+  /// height of the surface over a triangle is that of an arc over its edges, averaged over their directions; of a curve
+  /// over its chord, two thirds of the largest.
   std::vector<Vec3> stand_off() const;
 
  private:
   enum class Kind { straight, smooth, curve };
   struct SurfaceEdge {
     std::int64_t edge = 0;
-    std::int32_t p = 0, q = 0;              // ends
-    std::int32_t side[2] = {-1, -1};        // triangles
-    int count = 0;                          // of triangles
+    std::int32_t p = 0, q = 0;        // ends
+    std::int32_t side[2] = {-1, -1};  // triangles
+    int count = 0;                    // of triangles
     Kind kind = Kind::curve;
   };
 

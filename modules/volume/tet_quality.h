@@ -19,7 +19,8 @@ inline double tet_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   const Vec3 n0 = {-n1.x - n2.x - n3.x, -n1.y - n2.y - n3.y, -n1.z - n2.z - n3.z};
   const double l0 = dot(n0, n0), l1 = dot(n1, n1), l2 = dot(n2, n2), l3 = dot(n3, n3);
   double least = 1e300;
-  const auto edge = [&](const Vec3& m, const Vec3& n, double square) {  // the faces' normals, their areas' squares / edge^2
+  // the faces' normals, their areas' squares / edge^2
+  const auto edge = [&](const Vec3& m, const Vec3& n, double square) {
     const double s = dot(m, n) > 0 ? kObtuse * kObtuse / square : 1 / square;
     least = std::min(least, s);
   };

@@ -20,7 +20,8 @@ class BoxGrid {
     }
     void widen(double by) { low = low - Vec3{by, by, by}, high = high + Vec3{by, by, by}; }
     bool meets(const Box& o) const {
-      return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y && low.z <= o.high.z && o.low.z <= high.z;
+      return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y && low.z <= o.high.z &&
+             o.low.z <= high.z;
     }
   };
 
@@ -38,7 +39,8 @@ class BoxGrid {
     for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
     items_.resize(begin_.back());
     std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::size_t i = 0; i < boxes_.size(); ++i) each_cell(boxes_[i], [&](std::size_t c) { items_[next[c]++] = static_cast<std::int32_t>(i); });
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+      each_cell(boxes_[i], [&](std::size_t c) { items_[next[c]++] = static_cast<std::int32_t>(i); });
   }
 
   /// The boxes that meet a box, each once, ascending.

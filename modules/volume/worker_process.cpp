@@ -69,7 +69,9 @@ class Child {
     // TetGen asks for memory in many small blocks and gives none back: large pages, grown in large steps, save it a
     // fifth of its time. What the user has set comes last and counts.
     static constexpr char kTunables[] = "GLIBC_TUNABLES=";
-    std::string tunables = std::string(kTunables) + "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=4294967296:glibc.malloc.top_pad=67108864";
+    std::string tunables =
+        std::string(kTunables) +
+        "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=4294967296:glibc.malloc.top_pad=67108864";
     std::vector<char*> env;
     for (char** e = environ; *e; ++e) {
       if (std::strncmp(*e, kTunables, sizeof kTunables - 1) == 0) {
@@ -95,8 +97,7 @@ class Child {
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setsigdefault(&attributes, &reset);
     posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes,
-                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
     pid_t pid = -1;
     const int error = posix_spawn(&pid, path.c_str(), &actions, &attributes, argv.data(), env.data());
     posix_spawnattr_destroy(&attributes);
@@ -168,12 +169,12 @@ class Exchange {
 
   End run(Clock::time_point deadline, const std::atomic<bool>* given_up) {
     for (;;) {
-      const auto left =
-          std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
       stop_if_cancelled();  // the worker is ended on the way out
       if (left <= 0 || (given_up && *given_up)) return End::timed_out;
       pollfd p{channel_, static_cast<short>(sending() ? POLLIN | POLLOUT : POLLIN), 0};
-      const int ready = poll(&p, 1, static_cast<int>(std::min<long long>(left, given_up || cancelling_monitor() != nullptr ? 50 : 1000)));
+      const int ready = poll(
+          &p, 1, static_cast<int>(std::min<long long>(left, given_up || cancelling_monitor() != nullptr ? 50 : 1000)));
       if (ready < 0 && errno != EINTR) return End::closed;
       if (ready <= 0) continue;
       if ((p.revents & POLLOUT) && sending()) send_some();
@@ -234,8 +235,8 @@ class Exchange {
     if (stage_ == 1) return hello_ == kHello;
     if (stage_ != 2) return true;
     constexpr std::uint64_t limit = std::uint64_t{1} << 31;
-    if (header_.magic != kHello || header_.text_bytes > limit || header_.added_points > limit ||
-        header_.tets > limit || header_.faces > limit)
+    if (header_.magic != kHello || header_.text_bytes > limit || header_.added_points > limit || header_.tets > limit ||
+        header_.faces > limit)
       return false;
     reply_.text.resize(header_.text_bytes);
     reply_.added_points.resize(header_.added_points);
@@ -277,12 +278,12 @@ std::string how_it_ended(std::optional<int> status) {
 
 }  // namespace
 
-Reply run(const Program& program, const Request& request, Clock::time_point deadline, const std::atomic<bool>* given_up) {
+Reply run(const Program& program, const Request& request, Clock::time_point deadline,
+          const std::atomic<bool>* given_up) {
   Reply reply;
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    fail_internal("no channel to the volume mesher's worker: " + std::string(std::strerror(errno)),
-                  "fill_volume");
+    fail_internal("no channel to the volume mesher's worker: " + std::string(std::strerror(errno)), "fill_volume");
   const File ours(lifted(ends[0]));
   File theirs(lifted(ends[1]));
 

@@ -32,14 +32,15 @@ struct Reply {
     not_a_worker  // it could not be started, or does not speak our language
   };
   Kind kind = Kind::died;
-  std::string text;  // not yet one line
+  std::string text;     // not yet one line
   bool killed = false;  // by a signal from outside, without an answer: not TetGen's doing
   std::vector<Vec3> added_points;
   std::vector<std::int32_t> tets, neighbours, faces;
 };
 
-/// Starts the worker, sends the request, and waits for its answer until the deadline, or until `given_up`. The worker is gone and
-/// reaped when this returns.
-Reply run(const Program& program, const Request& request, Clock::time_point deadline, const std::atomic<bool>* given_up = nullptr);
+/// Starts the worker, sends the request, and waits for its answer until the deadline, or until `given_up`. The worker
+/// is gone and reaped when this returns.
+Reply run(const Program& program, const Request& request, Clock::time_point deadline,
+          const std::atomic<bool>* given_up = nullptr);
 
 }  // namespace stackmesh::worker

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/warning.h"
-#include "base/sha256.h"
-#include "base/parallel.h"
 #include "base/monitor.h"
+#include "base/parallel.h"
+#include "base/sha256.h"
+#include "base/warning.h"
 
 namespace stackmesh {
 namespace {
@@ -21,8 +21,7 @@ TEST(Error, IsOneLineThatSaysWhatWhereAndHowToMend) {
   EXPECT_STREQ(Error(ErrorKind::input, "bad", "", "mend it").what(), "bad; mend it");
   EXPECT_STREQ(Error(ErrorKind::input, "bad", "a.nii", "").what(), "bad, a.nii");
   EXPECT_STREQ(Error(ErrorKind::input, "bad", "", "").what(), "bad");
-  EXPECT_STREQ(Error(ErrorKind::input, "two\nlines", "odd\r\nname", "a\nb").what(),
-               "two lines, odd  name; a b");
+  EXPECT_STREQ(Error(ErrorKind::input, "two\nlines", "odd\r\nname", "a\nb").what(), "two lines, odd  name; a b");
 }
 
 template <class Action>
@@ -41,7 +40,8 @@ TEST(Warning, SaysWhereAndWhatAndEveryCodeHasItsOwnName) {
   const Warning w = warning_at(WarningCode::header, "a.nii", "its unit is not known");
   EXPECT_EQ(w.text, "a.nii: its unit is not known");
   EXPECT_EQ(w.where, "a.nii");
-  EXPECT_EQ(texts_of({w, {WarningCode::frame, "", "uncertain"}}), (std::vector<std::string>{"a.nii: its unit is not known", "uncertain"}));
+  EXPECT_EQ(texts_of({w, {WarningCode::frame, "", "uncertain"}}),
+            (std::vector<std::string>{"a.nii: its unit is not known", "uncertain"}));
   std::set<std::string> names;
   const int count = static_cast<int>(WarningCode::other) + 1;
   for (int code = 0; code < count; ++code) names.insert(to_text(static_cast<WarningCode>(code)));
@@ -61,8 +61,7 @@ TEST(ParallelFor, CallsEveryIndexOnce) {
     for (int threads : {0, 1, 2, 7, 64}) {
       std::vector<std::atomic<int>> calls(count);
       parallel_for(count, threads, [&](std::size_t i) { ++calls.at(i); });
-      for (std::size_t i = 0; i < count; ++i)
-        ASSERT_EQ(calls[i], 1) << i << " of " << count << ", threads " << threads;
+      for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(calls[i], 1) << i << " of " << count << ", threads " << threads;
     }
 }
 
@@ -86,9 +85,8 @@ TEST(ParallelFor, RethrowsWhatABodyThrows) {
 
 TEST(ParallelFor, LoopsNest) {
   std::atomic<int> sum{0};
-  parallel_for(20, 2, [&](std::size_t i) {
-    parallel_for(30, 2, [&](std::size_t j) { sum += static_cast<int>(i * j); });
-  });
+  parallel_for(20, 2,
+               [&](std::size_t i) { parallel_for(30, 2, [&](std::size_t j) { sum += static_cast<int>(i * j); }); });
   EXPECT_EQ(sum, 190 * 435);
 }
 
@@ -131,7 +129,8 @@ TEST(Sha256, HasThePublishedDigests) {
   };
   EXPECT_EQ(digest(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(digest("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(digest("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   EXPECT_EQ(digest(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 

@@ -24,8 +24,8 @@ Wide cross(GridPoint o, GridPoint a, GridPoint b) {
 
 /// Is p within one unit of s? In integers.
 bool within_one(const GridSegment& s, GridPoint p) {
-  const Wide dx = std::int64_t{s.b.x} - s.a.x, dy = std::int64_t{s.b.y} - s.a.y,
-             px = std::int64_t{p.x} - s.a.x, py = std::int64_t{p.y} - s.a.y;
+  const Wide dx = std::int64_t{s.b.x} - s.a.x, dy = std::int64_t{s.b.y} - s.a.y, px = std::int64_t{p.x} - s.a.x,
+             py = std::int64_t{p.y} - s.a.y;
   const Wide along = px * dx + py * dy, length2 = dx * dx + dy * dy;
   if (along <= 0) return px * px + py * py <= 1;
   const Wide qx = px - dx, qy = py - dy;
@@ -104,8 +104,7 @@ TEST(EdgeGrid, MissesNothingThatASegmentMeets) {
     for (int q = 0; q < 40; ++q) {
       // Across, beside, and past the cloud.
       const std::int32_t far =
-          q % 2 != 0 ? reach
-                     : static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{3} * reach, 1 << 29));
+          q % 2 != 0 ? reach : static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{3} * reach, 1 << 29));
       const GridSegment s = q % 4 == 0 ? segments[r() % segments.size()]
                                        : GridSegment{{between(r, -far, far), between(r, -far, far)},
                                                      {between(r, -far, far), between(r, -far, far)}};
@@ -130,17 +129,13 @@ TEST(EdgeGrid, MissesNothingThatABoxMeets) {
     for (int q = 0; q < 40; ++q) {
       const GridPoint a = {between(r, -reach, reach), between(r, -reach, reach)},
                       b = {between(r, -reach, reach), between(r, -reach, reach)};
-      const GridPoint low = {std::min(a.x, b.x), std::min(a.y, b.y)},
-                      high = {std::max(a.x, b.x), std::max(a.y, b.y)};
-      const auto inside = [&](GridPoint p) {
-        return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y;
-      };
+      const GridPoint low = {std::min(a.x, b.x), std::min(a.y, b.y)}, high = {std::max(a.x, b.x), std::max(a.y, b.y)};
+      const auto inside = [&](GridPoint p) { return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y; };
       std::set<std::int32_t> found;
       grid.near_box(low, high, [&](std::int32_t i) { found.insert(i); });
       for (std::size_t i = 0; i < segments.size(); ++i) {
         const GridSegment& s = segments[i];
-        if (!inside(s.a) && !inside(s.b) && !meet(s, {low, high}) &&
-            !meet(s, {{low.x, high.y}, {high.x, low.y}}))
+        if (!inside(s.a) && !inside(s.b) && !meet(s, {low, high}) && !meet(s, {{low.x, high.y}, {high.x, low.y}}))
           continue;
         ++met;
         ASSERT_EQ(found.count(static_cast<std::int32_t>(i)), 1U) << "seed " << seed << " segment " << i;

@@ -15,8 +15,8 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-const std::vector<LabelInfo> kLabels = {{1, "heart"}, {4, "lung-2"}, {7, ""},
-                                        {8, "3-9"}, {9, "femur"}, {1000, "12"},  {70000, "femur"}};
+const std::vector<LabelInfo> kLabels = {{1, "heart"}, {4, "lung-2"}, {7, ""},         {8, "3-9"},
+                                        {9, "femur"}, {1000, "12"},  {70000, "femur"}};
 
 /// Counted from 1.
 Indices resolved(const std::string& text) {
@@ -65,8 +65,8 @@ TEST(ResolveLabels, GivesNumbersAndValuesByLabel) {
 }
 
 TEST(ResolveLabels, RefusesWhatIsAbsent) {
-  for (const char* text : {"2", "5-6", "liver", "1,2", "0", "Heart", "-3", "7-", "-", "1-2-3",
-                           "99999999999999999999", "1;4", " 4"})
+  for (const char* text :
+       {"2", "5-6", "liver", "1,2", "0", "Heart", "-3", "7-", "-", "1-2-3", "99999999999999999999", "1;4", " 4"})
     EXPECT_EQ(refusal(text), ErrorKind::input) << text;
   std::string message;
   refusal("1,liver", &message);
@@ -75,8 +75,7 @@ TEST(ResolveLabels, RefusesWhatIsAbsent) {
 }
 
 TEST(ResolveLabels, RefusesWhatIsMalformed) {
-  for (const char* text : {",", "1,", ",1", "1,,4", "9-7"})
-    EXPECT_EQ(refusal(text), ErrorKind::usage) << text;
+  for (const char* text : {",", "1,", ",1", "1,,4", "9-7"}) EXPECT_EQ(refusal(text), ErrorKind::usage) << text;
 }
 
 TEST(SelectLabels, TheRestBecomesBackground) {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "sections/extract.h"
 #include "image/read_labels.h"
+#include "sections/extract.h"
 
 namespace {
 

@@ -1,5 +1,7 @@
 // Smoothing, sizing, remeshing and guard together against CGAL's unguarded isotropic_remeshing (3 iterations, same
 // target length) on the same stitched surface in the same run; a series for linearity; one thread against two.
+#include "enhance/enhance.h"
+
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
@@ -11,9 +13,8 @@
 #include <filesystem>
 #include <map>
 
-#include "sections/extract.h"
-#include "enhance/enhance.h"
 #include "image/read_labels.h"
+#include "sections/extract.h"
 #include "sections/polygons.h"
 #include "stitch/stitch.h"
 
@@ -66,7 +67,8 @@ const Surface* heart() {
     Monitor quiet;
     Stack stack = extract_sections(read_label_volume(path), {}, quiet).stack;
     s.pixel_mm = stack.pixel_mm;
-    s.gap_mm = (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(stack.sections.size() - 1);
+    s.gap_mm =
+        (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(stack.sections.size() - 1);
     s.complex = stitch_sections(stack, {}, quiet).complex;
     s.edge_mm = 3;
   }
@@ -124,8 +126,16 @@ void CgalIsotropicRemeshing(benchmark::State& state) {
 
 BENCHMARK(CgalIsotropicRemeshing)->Arg(0)->Arg(50)->Arg(158)->Unit(benchmark::kMillisecond);
 BENCHMARK(Enhance)
-    ->Args({0, 1})->Args({0, 2})->Args({50, 1})->Args({158, 1})->Args({158, 2})->Args({500, 1})->Args({500, 2})
-    ->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+    ->Args({0, 1})
+    ->Args({0, 2})
+    ->Args({50, 1})
+    ->Args({158, 1})
+    ->Args({158, 2})
+    ->Args({500, 1})
+    ->Args({500, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 // Usage: bench_junctions [LABELS.nii.gz [EDGE_MM]]; prints Markdown tables for docs/enhancement.md.
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/omstream.hh>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,11 +10,11 @@
 #include <map>
 #include <set>
 
-#include "sections/extract.h"
 #include "enhance/complex_mesh.h"
 #include "enhance/enhance.h"
 #include "enhance/sizing.h"
 #include "image/read_labels.h"
+#include "sections/extract.h"
 #include "stitch/stitch.h"
 
 namespace {
@@ -35,8 +34,7 @@ struct Study {
 void study_angles(const InterfaceComplex& c, Study& out) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> apexes;
   for (const InterfaceTriangle& t : c.triangles)
-    for (int k = 0; k < 3; ++k)
-      apexes[std::minmax(t.v[k], t.v[(k + 1) % 3])].push_back(t.v[(k + 2) % 3]);
+    for (int k = 0; k < 3; ++k) apexes[std::minmax(t.v[k], t.v[(k + 1) % 3])].push_back(t.v[(k + 2) % 3]);
   for (const auto& [edge, around] : apexes) {
     if (around.size() < 3) continue;
     ++out.edges;
@@ -101,7 +99,8 @@ int main(int argc, char** argv) {
   Stack stack = extract_sections(read_label_volume(path), {}, quiet).stack;
   EnhanceOptions o;
   o.pixel_mm = stack.pixel_mm;
-  o.gap_mm = (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(stack.sections.size() - 1);
+  o.gap_mm =
+      (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(stack.sections.size() - 1);
   o.edge_length_mm = argc > 2 ? std::atof(argv[2]) : 6;
   const InterfaceComplex stitched = stitch_sections(stack, {}, quiet).complex;
   o.remesh = false;
@@ -124,7 +123,8 @@ int main(int argc, char** argv) {
   std::printf("| | stitched | smoothed | remeshed |\n|---|---|---|---|\n");
   row("triangles", [&](int k) { return stages[k]->triangles.size(); });
   row("edges of three sheets or more", [&](int k) { return study[k].edges; });
-  for (double a : kAngles) row("angles below " + std::to_string(static_cast<int>(a)) + " degrees", [&](int k) { return study[k].angles[a]; });
+  for (double a : kAngles)
+    row("angles below " + std::to_string(static_cast<int>(a)) + " degrees", [&](int k) { return study[k].angles[a]; });
   char text[64];
   for (double r : kRatios) {
     std::snprintf(text, sizeof text, r < 1e9 ? "thickness below %g edges" : "thickness of more edges", r);

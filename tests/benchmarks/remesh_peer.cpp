@@ -1,5 +1,5 @@
-// CGAL's isotropic remeshing of a closed surface, as users put it between a smoothed surface and TetGen: what apps/make_accuracy.py compares with.
-// bench_remesh_peer IN.off OUT.off EDGE_MM
+// CGAL's isotropic remeshing of a closed surface, as users put it between a smoothed surface and TetGen: what
+// apps/make_accuracy.py compares with. bench_remesh_peer IN.off OUT.off EDGE_MM
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Surface_mesh.h>
@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   Mesh mesh;
   std::ifstream in(argv[1]);
   if (!(in >> mesh)) return 3;
-  pmp::isotropic_remeshing(faces(mesh), std::atof(argv[3]), mesh, pmp::parameters::number_of_iterations(5).number_of_relaxation_steps(3));
+  pmp::isotropic_remeshing(faces(mesh), std::atof(argv[3]), mesh,
+                           pmp::parameters::number_of_iterations(5).number_of_relaxation_steps(3));
   mesh.collect_garbage();
   std::ofstream out(argv[2]);
   out.precision(17);

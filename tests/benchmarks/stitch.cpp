@@ -1,14 +1,15 @@
 // Stitching against its floor: CGAL's own insertion of the same rounded constraints, in the same run.
 // Sizes are those of the paper's examples (sections / vertices), one large stack, and a series for linearity.
+#include "stitch/stitch.h"
+
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 
-#include "sections/polygons.h"
 #include "planar/snap_rounding.h"
-#include "stitch/stitch.h"
+#include "sections/polygons.h"
 
 namespace {
 
@@ -82,14 +83,25 @@ void stitch(benchmark::State& state, int threads) {
   state.counters["triangles"] = static_cast<double>(triangles);
 }
 
-void StitchOneThread(benchmark::State& state) { stitch(state, 1); }
-void StitchTwoThreads(benchmark::State& state) { stitch(state, 2); }
-void StitchLinear(benchmark::State& state) { stitch(state, 1); }
+void StitchOneThread(benchmark::State& state) {
+  stitch(state, 1);
+}
+void StitchTwoThreads(benchmark::State& state) {
+  stitch(state, 2);
+}
+void StitchLinear(benchmark::State& state) {
+  stitch(state, 1);
+}
 
 BENCHMARK(FloorCdt)->Apply(sizes);
 BENCHMARK(StitchOneThread)->Apply(sizes);
 BENCHMARK(StitchTwoThreads)->Apply(sizes)->UseRealTime();
-BENCHMARK(StitchLinear)->Args({100, 40000})->Args({200, 80000})->Args({400, 160000})->Args({800, 320000})->Unit(benchmark::kMillisecond);
+BENCHMARK(StitchLinear)
+    ->Args({100, 40000})
+    ->Args({200, 80000})
+    ->Args({400, 160000})
+    ->Args({800, 320000})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

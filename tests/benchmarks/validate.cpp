@@ -16,7 +16,8 @@ InterfaceComplex ball(int rings, double scale) {
   const int columns = 2 * rings;
   const auto point = [&](double theta, double phi) {
     const double r = scale * (0.4 + 0.02 * std::sin(5 * theta) * std::cos(4 * phi));
-    return Vec3{0.5 * scale + r * std::sin(theta) * std::cos(phi), 0.5 * scale + r * std::sin(theta) * std::sin(phi), 0.5 * scale + r * std::cos(theta)};
+    return Vec3{0.5 * scale + r * std::sin(theta) * std::cos(phi), 0.5 * scale + r * std::sin(theta) * std::sin(phi),
+                0.5 * scale + r * std::cos(theta)};
   };
   const double pi = std::acos(-1.0);
   for (int i = 1; i < rings; ++i)
@@ -44,7 +45,8 @@ LabelVolume voxels(int n) {
   const double r2 = 0.16 * n * n, m = 0.5 * n - 0.5;
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) v.voxels[v.index(i, j, k)] = (i - m) * (i - m) + (j - m) * (j - m) + (k - m) * (k - m) < r2;
+      for (int i = 0; i < n; ++i)
+        v.voxels[v.index(i, j, k)] = (i - m) * (i - m) + (j - m) * (j - m) + (k - m) * (k - m) < r2;
   return v;
 }
 
@@ -54,7 +56,9 @@ void surface_by_triangles(benchmark::State& state) {
   o.threads = 1;
   for (auto _ : state) benchmark::DoNotOptimize(check_surface(c, o).self_intersections);
   state.counters["triangles"] = static_cast<double>(c.triangles.size());
-  state.counters["us/triangle"] = benchmark::Counter(static_cast<double>(c.triangles.size()) * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["us/triangle"] =
+      benchmark::Counter(static_cast<double>(c.triangles.size()) * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(surface_by_triangles)->Arg(75)->Arg(150)->Arg(300)->Arg(600)->Unit(benchmark::kMillisecond);
 

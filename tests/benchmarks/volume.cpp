@@ -64,8 +64,12 @@ void fill(benchmark::State& state, bool improve) {
   state.counters["smallest_dihedral"] = check.dihedral_min_deg;
 }
 
-void BM_Fill(benchmark::State& state) { fill(state, false); }
-void BM_FillAndImprove(benchmark::State& state) { fill(state, true); }
+void BM_Fill(benchmark::State& state) {
+  fill(state, false);
+}
+void BM_FillAndImprove(benchmark::State& state) {
+  fill(state, true);
+}
 
 void BM_SecondOrder(benchmark::State& state) {
   const TetMesh mesh = fill_volume(sphere(static_cast<int>(state.range(0))), options(true)).mesh;

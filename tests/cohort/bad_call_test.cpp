@@ -34,7 +34,8 @@ TEST_F(BadCall, Manifests) {
   manifest("id,input\na,a.nrrd\n\na,a.nrrd\n", 3, {"the id 'a' stands twice", "lines 2 and 4"});
   manifest("id,input\na,b.nrrd\n", 3, {"is not there", "b.nrrd", "line 2"});
   manifest("id,input\na,\n", 3, {"case 'a' has no input", "line 2"});
-  for (const char* id : {"x/y", "..", "a..b", ".a", "-a", "a.failed", "cohort.csv", "cohort_thumbnails", "failed", "\"a,b\""})
+  for (const char* id :
+       {"x/y", "..", "a..b", ".a", "-a", "a.failed", "cohort.csv", "cohort_thumbnails", "failed", "\"a,b\""})
     manifest(std::string("id,input\n") + id + ",a.nrrd\n", 3, {"the id '", "line 2", "it names the case's folder"});
   manifest("id,input\n\"a\nb\",a.nrrd\n", 3, {"control characters", "line 2"});
   manifest("id,input\na,a.nrrd,2\n", 3, {"3 cells under 2 columns", "line 2"});
@@ -80,7 +81,8 @@ TEST_F(BadCall, SlurmIsNotThere) {
   write("cases.csv", "id,input\na,a.nrrd\n");
   program::Around nowhere;
   nowhere.in_child = [] { return ::setenv("PATH", "/nowhere", 1) == 0; };
-  fails(2, {"batch", in("cases.csv"), "-o", cohort(), "--slurm", "--partition=x"}, {"Slurm is not here", "sbatch"}, {}, nowhere);
+  fails(2, {"batch", in("cases.csv"), "-o", cohort(), "--slurm", "--partition=x"}, {"Slurm is not here", "sbatch"}, {},
+        nowhere);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ TEST_F(CohortTest, EveryGoodCaseIsDoneAndTheBadOneIsNamed) {
   four_cases();
   const Ended run = batch();
   EXPECT_EQ(run.code, 4) << run.err;
-  EXPECT_EQ(names(), (std::vector<std::string>{"a", "b", "bad.failed", "c", "cohort.csv", "cohort.html", "cohort.json", "cohort_thumbnails"}));
+  EXPECT_EQ(names(), (std::vector<std::string>{"a", "b", "bad.failed", "c", "cohort.csv", "cohort.html", "cohort.json",
+                                               "cohort_thumbnails"}));
   for (const char* id : {"a", "b", "c"}) {
     std::vector<std::string> files;
     for (const auto& entry : fs::directory_iterator(in_cohort(id))) files.push_back(entry.path().filename().string());
@@ -43,7 +44,8 @@ TEST_F(CohortTest, TheMeshIsThatOfThePlainCommand) {
   four_cases();
   write("cases.csv", "id,input,edge-length,merge\nb,b.nrrd,1.5,yes\n");
   ASSERT_EQ(batch({"--no-page", "--format", "vtu,stl", "--", "--smooth", "3"}).code, 0);
-  succeeds({"mesh", in("b.nrrd"), "--edge-length", "1.5", "--merge", "--smooth", "3", "-o", out("b.vtu"), "-o", out("b.stl")});
+  succeeds({"mesh", in("b.nrrd"), "--edge-length", "1.5", "--merge", "--smooth", "3", "-o", out("b.vtu"), "-o",
+            out("b.stl")});
   EXPECT_GT(read_file(out("b.vtu")).size(), 1000u);
   EXPECT_EQ(read_file(in_cohort("b/mesh.vtu")), read_file(out("b.vtu")));
   EXPECT_EQ(read_file(in_cohort("b/mesh.stl")), read_file(out("b.stl")));
@@ -127,7 +129,8 @@ TEST_F(CohortTest, ACaseThatTakesTooLongIsEndedAndTriedAgain) {
   EXPECT_EQ(run.code, 4);
   const Json failed = json("slow.failed/failed.json");
   EXPECT_EQ(failed["tries"], 2);
-  EXPECT_NE(failed["reason"].get<std::string>().find("took longer than the 0.6 s of --timeout"), std::string::npos) << failed["reason"];
+  EXPECT_NE(failed["reason"].get<std::string>().find("took longer than the 0.6 s of --timeout"), std::string::npos)
+      << failed["reason"];
   EXPECT_LT(failed["wall_s"], 30.0);
 }
 
@@ -215,7 +218,8 @@ TEST_F(CohortTest, AStoppedRunGoesOnAndLosesNothing) {
   for (const int signal : {SIGINT, SIGKILL}) {
     const Ended run = interrupted(call, cohort(), signal);
     EXPECT_EQ(run.code, -signal) << run.out << run.err;
-    for (int i = 0; i < 100 && processes_with(cohort()) > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (int i = 0; i < 100 && processes_with(cohort()) > 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_EQ(processes_with(cohort()), 0) << "orphans after signal " << signal;
     EXPECT_TRUE(fs::exists(in_cohort("a/done")));
     EXPECT_FALSE(fs::exists(in_cohort("slow")));
@@ -253,9 +257,12 @@ TEST_F(CohortTest, BidsTreesAndGlobsMakeIds) {
       for (const Json& c : plan["cases"]) found.push_back(c["id"]);
     return found;
   };
-  EXPECT_EQ(ids({"batch", folder_ + "/in", "-o", cohort(), "--dry-run", "--json"}), (std::vector<std::string>{"sub-01", "sub-02_ses-1"}));
-  EXPECT_EQ(ids({"batch", "--inputs", in("sub-*/anat/*.nrrd"), "-o", cohort(), "--dry-run", "--json"}), std::vector<std::string>{"sub-01"});
-  EXPECT_EQ(ids({"batch", folder_ + "/in", "--inputs", "sub-02/*/anat/*.nrrd", "-o", cohort(), "--dry-run", "--json"}), (std::vector<std::string>{"sub-02_ses-1_T1w", "sub-02_ses-1"}));
+  EXPECT_EQ(ids({"batch", folder_ + "/in", "-o", cohort(), "--dry-run", "--json"}),
+            (std::vector<std::string>{"sub-01", "sub-02_ses-1"}));
+  EXPECT_EQ(ids({"batch", "--inputs", in("sub-*/anat/*.nrrd"), "-o", cohort(), "--dry-run", "--json"}),
+            std::vector<std::string>{"sub-01"});
+  EXPECT_EQ(ids({"batch", folder_ + "/in", "--inputs", "sub-02/*/anat/*.nrrd", "-o", cohort(), "--dry-run", "--json"}),
+            (std::vector<std::string>{"sub-02_ses-1_T1w", "sub-02_ses-1"}));
 }
 
 }  // namespace

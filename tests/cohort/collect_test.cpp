@@ -1,9 +1,10 @@
 // stackmesh collect on cohorts whose records and reports are written by the test: order, exit codes, sizes.
+#include "cohort/collect.h"
+
 #include <filesystem>
 #include <fstream>
 #include <random>
 
-#include "cohort/collect.h"
 #include "cohort/table.h"
 #include "small_cohort.h"
 
@@ -46,11 +47,21 @@ class MadeUpCohort : public CohortTest {
   void done(const std::string& id, double volume, const std::string& status = "pass") {
     plan_.cases.push_back({id, {id + ".nii.gz"}, {}});
     const auto label = [&](int n, double v) {
-      return Json{{"label", n}, {"name", n == 1 ? "bone" : ""}, {"colour", nullptr}, {"tet_volume_mm3", v}, {"input_volume_mm3", v}, {"dice", 0.99}, {"components", 1}, {"angle_min_deg", 25.0}, {"wrong_centres_share", 0.0}, {"band_distance_mm", nullptr}};
+      return Json{{"label", n},
+                  {"name", n == 1 ? "bone" : ""},
+                  {"colour", nullptr},
+                  {"tet_volume_mm3", v},
+                  {"input_volume_mm3", v},
+                  {"dice", 0.99},
+                  {"components", 1},
+                  {"angle_min_deg", 25.0},
+                  {"wrong_centres_share", 0.0},
+                  {"band_distance_mm", nullptr}};
     };
-    const Json report = {{"verdicts", {{{"title", "Quality"}, {"figure", "a dihedral angle of 3 degrees"}, {"status", status}}}},
-                         {"volume", {{"tets", 10000}, {"dihedral_min_deg", 15.0}, {"scaled_jacobian_min", 0.2}}},
-                         {"labels", {label(1, volume), label(2, 500)}}};
+    const Json report = {
+        {"verdicts", {{{"title", "Quality"}, {"figure", "a dihedral angle of 3 degrees"}, {"status", status}}}},
+        {"volume", {{"tets", 10000}, {"dihedral_min_deg", 15.0}, {"scaled_jacobian_min", 0.2}}},
+        {"labels", {label(1, volume), label(2, 500)}}};
     put(in_cohort(id + "/done"), to_json(record(id, true)));
     put(in_cohort(id + "/report.json"), report.dump());
   }
@@ -80,10 +91,13 @@ TEST_F(MadeUpCohort, FailuresThenLimitsThenOutliersComeFirst) {
   std::vector<std::string> ids;
   const Json page = json("cohort.json");
   for (const Json& c : page["cases"]) ids.push_back(c["id"]);
-  EXPECT_EQ(std::vector<std::string>(ids.begin(), ids.begin() + 6), (std::vector<std::string>{"broken", "open", "beyond", "further", "outlier", "good-0"}));
+  EXPECT_EQ(std::vector<std::string>(ids.begin(), ids.begin() + 6),
+            (std::vector<std::string>{"broken", "open", "beyond", "further", "outlier", "good-0"}));
   EXPECT_EQ(page["counts"]["outliers"], 2);
   EXPECT_EQ(page["counts"]["outside_limits"], 1);
-  EXPECT_NE(page["cases"][3]["remarkable"][0].get<std::string>().find("label 1 (bone): volume 9000 mm3, median 1"), std::string::npos) << page["cases"][3]["remarkable"];
+  EXPECT_NE(page["cases"][3]["remarkable"][0].get<std::string>().find("label 1 (bone): volume 9000 mm3, median 1"),
+            std::string::npos)
+      << page["cases"][3]["remarkable"];
   const std::string html = read_file(in_cohort("cohort.html"));
   EXPECT_NE(html.find("the input &lt;b&gt;is&lt;/b&gt; broken"), std::string::npos) << "reasons are escaped";
   EXPECT_LT(html.find("further/report.html"), html.find("good-0/report.html"));
@@ -110,7 +124,8 @@ TEST_F(MadeUpCohort, WhatOtherOptionsMadeIsNoResult) {
   plan_.cases[0].options.clear();
   put(in_cohort("a/report.json"), "{ broken");
   EXPECT_EQ(collect_it().code, 4);
-  EXPECT_NE(json("cohort.json")["cases"][0]["reason"].get<std::string>().find("report cannot be read"), std::string::npos);
+  EXPECT_NE(json("cohort.json")["cases"][0]["reason"].get<std::string>().find("report cannot be read"),
+            std::string::npos);
 }
 
 TEST_F(MadeUpCohort, TheTableHasALineForEachLabel) {
@@ -142,7 +157,8 @@ TEST_F(MadeUpCohort, AThousandCasesMakeASmallPageWithThePlantedOutlierFirst) {
   EXPECT_EQ(collect_it().code, 0);
   EXPECT_LT(fs::file_size(in_cohort("cohort.html")), 25u * 1000 * 1000);
   EXPECT_EQ(json("cohort.json")["cases"].size(), 1000u);
-  const Ended browser = program::python("cohort_in_browser.py", {in_cohort("cohort.html"), "--cases", "1000", "--first", "sub-500", "--no-pictures"});
+  const Ended browser = program::python(
+      "cohort_in_browser.py", {in_cohort("cohort.html"), "--cases", "1000", "--first", "sub-500", "--no-pictures"});
   if (browser.code == 77) GTEST_SKIP() << browser.out;
   EXPECT_EQ(browser.code, 0) << browser.out << browser.err;
   for (const std::string& line : program::lines_of(browser.out))

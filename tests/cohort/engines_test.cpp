@@ -1,4 +1,5 @@
-// The same cohort by Slurm, by Snakemake and as a BIDS App: the same bytes as here. Each is skipped, aloud, where the engine is absent.
+// The same cohort by Slurm, by Snakemake and as a BIDS App: the same bytes as here. Each is skipped, aloud, where the
+// engine is absent.
 #include <stdlib.h>
 
 #include <filesystem>
@@ -20,7 +21,8 @@ class Engines : public CohortTest {
       ASSERT_TRUE(fs::exists(other + "/" + id + "/done")) << id;
       EXPECT_EQ(read_file(other + "/" + id + "/mesh.vtu"), read_file(in_cohort(std::string(id) + "/mesh.vtu"))) << id;
     }
-    EXPECT_EQ(Json::parse(read_file(other + "/bad.failed/failed.json"))["reason"], json("bad.failed/failed.json")["reason"]);
+    EXPECT_EQ(Json::parse(read_file(other + "/bad.failed/failed.json"))["reason"],
+              json("bad.failed/failed.json")["reason"]);
     EXPECT_FALSE(fs::exists(other + "/bad"));
   }
 };
@@ -40,7 +42,9 @@ class Slurm : public Engines {
     ::unsetenv("SLURM_CONF");
     Engines::TearDown();
   }
-  Ended slurm(const std::string& what) const { return program::run({"/bin/bash", STACKMESH_SOURCE_DIR "/tests/support/small_slurm.sh", what, folder_ + "/slurm"}); }
+  Ended slurm(const std::string& what) const {
+    return program::run({"/bin/bash", STACKMESH_SOURCE_DIR "/tests/support/small_slurm.sh", what, folder_ + "/slurm"});
+  }
 };
 
 TEST_F(Slurm, ArrayJobsMakeTheSameBytes) {
@@ -49,7 +53,8 @@ TEST_F(Slurm, ArrayJobsMakeTheSameBytes) {
   ASSERT_EQ(batch({"--no-page", "--", "--smooth", "4"}).code, 4);
   const std::string other = out("by_slurm");
   const auto submit = [&](const std::string& of_sbatch) {
-    std::vector<std::string> call = {"batch", in("cases.csv"), "-o", other, "--slurm", of_sbatch, "--cases-per-task", "2"};
+    std::vector<std::string> call = {"batch",   in("cases.csv"),    "-o", other, "--slurm",
+                                     of_sbatch, "--cases-per-task", "2"};
     call.insert(call.end(), options.begin(), options.end());
     return program::stackmesh(call);
   };
@@ -81,8 +86,20 @@ TEST_F(Engines, SnakemakeMakesTheSameBytes) {
   four_cases();
   ASSERT_EQ(batch({"--no-page", "--", "--smooth", "4"}).code, 4);
   const std::string other = out("by_snakemake");
-  const std::vector<std::string> call = {"/usr/bin/snakemake", "-s", STACKMESH_SOURCE_DIR "/apps/snakemake/Snakefile", "--directory", folder_, "--cores", "2", "--keep-going", "--quiet", "--config",
-                                         "manifest=" + in("cases.csv"), "out=" + other, "program=" STACKMESH_PROGRAM, "options=mesh --smooth 4"};
+  const std::vector<std::string> call = {"/usr/bin/snakemake",
+                                         "-s",
+                                         STACKMESH_SOURCE_DIR "/apps/snakemake/Snakefile",
+                                         "--directory",
+                                         folder_,
+                                         "--cores",
+                                         "2",
+                                         "--keep-going",
+                                         "--quiet",
+                                         "--config",
+                                         "manifest=" + in("cases.csv"),
+                                         "out=" + other,
+                                         "program=" STACKMESH_PROGRAM,
+                                         "options=mesh --smooth 4"};
   const Ended first = program::run(call);
   EXPECT_NE(first.code, 0) << "one case fails";
   expect_same(other);
@@ -95,9 +112,11 @@ TEST_F(Engines, SnakemakeMakesTheSameBytes) {
 }
 
 TEST_F(Engines, TheBidsAppMeshesParticipantsAndCollectsTheGroup) {
-  for (const char* who : {"01", "02", "011"}) write(std::string("sub-") + who + "/anat/sub-" + who + "_dseg.nrrd", box_volume(9, 6));
+  for (const char* who : {"01", "02", "011"})
+    write(std::string("sub-") + who + "/anat/sub-" + who + "_dseg.nrrd", box_volume(9, 6));
   const auto app = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"/usr/bin/python3", STACKMESH_SOURCE_DIR "/apps/stackmesh-bids", folder_ + "/in", cohort()});
+    words.insert(words.begin(),
+                 {"/usr/bin/python3", STACKMESH_SOURCE_DIR "/apps/stackmesh-bids", folder_ + "/in", cohort()});
     ::setenv("STACKMESH", STACKMESH_PROGRAM, 1);
     return program::run(words);
   };

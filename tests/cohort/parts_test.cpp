@@ -31,7 +31,8 @@ TEST_F(CohortTest, TablesKeepQuotedCellsAndLineNumbers) {
   EXPECT_EQ(t.rows[1].cells, (std::vector<std::string>{"c", "d"}));
   EXPECT_EQ(t.rows[1].line, 5u);
   EXPECT_EQ(read_table(write("t.tsv", "id\tinput\na,b\tc\n")).rows[0].cells, (std::vector<std::string>{"a,b", "c"}));
-  for (const std::string& text : {std::string("a,b"), std::string("say \"so\""), std::string("plain"), std::string("two\nlines")}) {
+  for (const std::string& text :
+       {std::string("a,b"), std::string("say \"so\""), std::string("plain"), std::string("two\nlines")}) {
     const Table back = read_table(write("c.csv", "id,input\n" + csv_cell(text) + ",x\n"));
     EXPECT_EQ(back.rows.at(0).cells[0], text);
   }
@@ -159,11 +160,14 @@ TEST(SlurmArrays, TheScriptSurvivesTheShell) {
   EXPECT_NE(script.find("#SBATCH --mem=2048M\n"), std::string::npos);
   EXPECT_NE(script.find("#SBATCH --time=20\n"), std::string::npos);
   const CommandOutput said = output_of({"bash", "-c", script});
-  EXPECT_EQ(said.text, "batch --task /tmp/it's a folder/.cohort/slurm/array-1.plan.json --cases-per-task 1 -o /tmp/it's a folder --timeout 5 --case-memory 2048M\n");
+  EXPECT_EQ(said.text,
+            "batch --task /tmp/it's a folder/.cohort/slurm/array-1.plan.json --cases-per-task 1 -o /tmp/it's a folder "
+            "--timeout 5 --case-memory 2048M\n");
 }
 
 TEST(SlurmArrays, WordsAreSplitAsAShellDoes) {
-  EXPECT_EQ(shell_words("--partition=long  --comment='two words' \"\" x\"y z\""), (std::vector<std::string>{"--partition=long", "--comment=two words", "", "xy z"}));
+  EXPECT_EQ(shell_words("--partition=long  --comment='two words' \"\" x\"y z\""),
+            (std::vector<std::string>{"--partition=long", "--comment=two words", "", "xy z"}));
   EXPECT_TRUE(shell_words(" ").empty());
   EXPECT_THROW(shell_words("--comment='open"), Error);
 }
@@ -178,14 +182,17 @@ std::vector<std::uint8_t> pixels_of(const std::string& png, int& width, int& hei
   width = static_cast<int>(number(16));
   height = static_cast<int>(number(20));
   const std::size_t at = png.find("IDAT") + 4, length = number(at - 8);
-  EXPECT_EQ(::crc32(0, reinterpret_cast<const Bytef*>(png.data() + at - 4), static_cast<uInt>(length + 4)), number(at + length));
+  EXPECT_EQ(::crc32(0, reinterpret_cast<const Bytef*>(png.data() + at - 4), static_cast<uInt>(length + 4)),
+            number(at + length));
   std::vector<std::uint8_t> rows(static_cast<std::size_t>(height) * (3 * width + 1));
   uLongf size = rows.size();
   EXPECT_EQ(::uncompress(rows.data(), &size, reinterpret_cast<const Bytef*>(png.data() + at), length), Z_OK);
   EXPECT_EQ(size, rows.size());
   std::vector<std::uint8_t> rgb;
   for (int y = 0; y < height; ++y)
-    for (int i = 0; i < 3 * width; ++i) rgb.push_back(static_cast<std::uint8_t>(rows[static_cast<std::size_t>(y) * (3 * width + 1) + 1 + i] + (i < 3 ? 0 : rgb[rgb.size() - 3])));
+    for (int i = 0; i < 3 * width; ++i)
+      rgb.push_back(static_cast<std::uint8_t>(rows[static_cast<std::size_t>(y) * (3 * width + 1) + 1 + i] +
+                                              (i < 3 ? 0 : rgb[rgb.size() - 3])));
   return rgb;
 }
 
@@ -204,8 +211,10 @@ TEST(Pictures, TheTopOfABoxIsAboveAndItsFrontIsSeen) {
   InterfaceComplex boxes;
   const auto add = [&](double low_z, double high_z, double half, Label label) {
     const std::int32_t first = static_cast<std::int32_t>(boxes.points.size());
-    for (int i = 0; i < 8; ++i) boxes.points.push_back({i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? high_z : low_z});
-    for (const auto& q : {std::array<int, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+    for (int i = 0; i < 8; ++i)
+      boxes.points.push_back({i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? high_z : low_z});
+    for (const auto& q :
+         {std::array<int, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
       boxes.triangles.push_back({{first + q[0], first + q[1], first + q[2]}, label, 0});
       boxes.triangles.push_back({{first + q[0], first + q[2], first + q[3]}, label, 0});
     }

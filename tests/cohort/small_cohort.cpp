@@ -9,7 +9,8 @@ namespace cohort_test {
 std::string box_volume(int width, int height, bool second, double spacing_mm) {
   std::ostringstream head;
   const std::string s = std::to_string(spacing_mm);
-  head << "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: " << width << " " << width << " " << height << "\nspace directions: (" << s << ",0,0) (0," << s << ",0) (0,0," << s
+  head << "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: " << width << " " << width << " "
+       << height << "\nspace directions: (" << s << ",0,0) (0," << s << ",0) (0,0," << s
        << ")\nspace origin: (0,0,0)\nencoding: raw\n\n";
   std::string bytes = head.str();
   for (int z = 0; z < height; ++z)
@@ -43,7 +44,8 @@ Json CohortTest::json(const std::string& name) const {
 
 int CohortTest::times(const std::string& event, const std::string& id) const {
   int n = 0;
-  for (const std::string& line : program::lines_of(program::read_file(in_cohort(".cohort/journal.tsv")))) n += line.find("\t" + event + "\t" + id + "\t") != std::string::npos;
+  for (const std::string& line : program::lines_of(program::read_file(in_cohort(".cohort/journal.tsv"))))
+    n += line.find("\t" + event + "\t" + id + "\t") != std::string::npos;
   return n;
 }
 

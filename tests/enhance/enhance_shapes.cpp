@@ -55,10 +55,10 @@ InterfaceComplex ball(double radius, int levels) {
   InterfaceComplex c;
   c.points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
               {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::array<std::int32_t, 3>> faces = {
-      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  std::vector<std::array<std::int32_t, 3>> faces = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                                    {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                                    {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                                    {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middle;
     std::vector<std::array<std::int32_t, 3>> next;
@@ -86,7 +86,9 @@ std::vector<double> bends_deg(const InterfaceComplex& c) {
     const Vec3 n = cross(c.points[t.v[1]] - c.points[t.v[0]], c.points[t.v[2]] - c.points[t.v[0]]);
     for (int k = 0; k < 3; ++k) {
       const auto [it, fresh] = first.insert({std::minmax(int(t.v[k]), int(t.v[(k + 1) % 3])), n});
-      if (!fresh) bends.push_back(std::acos(std::clamp(dot(n, it->second) / (norm(n) * norm(it->second)), -1.0, 1.0)) * 180 / M_PI);
+      if (!fresh)
+        bends.push_back(std::acos(std::clamp(dot(n, it->second) / (norm(n) * norm(it->second)), -1.0, 1.0)) * 180 /
+                        M_PI);
     }
   }
   return bends;

@@ -20,8 +20,8 @@ EnhanceOptions options_of(const Stack& stack) {
   EnhanceOptions o;
   o.pixel_mm = stack.pixel_mm;
   const std::size_t n = stack.sections.size();
-  o.gap_mm = n > 1 ? (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(n - 1)
-                   : stack.pixel_mm;
+  o.gap_mm =
+      n > 1 ? (stack.sections.back().z_mm - stack.sections.front().z_mm) / static_cast<double>(n - 1) : stack.pixel_mm;
   return o;
 }
 
@@ -53,13 +53,12 @@ std::string broken(const InterfaceComplex& before, const EnhanceResult& after) {
     const std::string name = "label " + std::to_string(a.label);
     if (!b.closed) out += name + " is open; ";
     if (a.components != b.components)
-      out += name + " went from " + std::to_string(a.components) + " to " + std::to_string(b.components) +
-             " pieces; ";
+      out += name + " went from " + std::to_string(a.components) + " to " + std::to_string(b.components) + " pieces; ";
     if (a.euler != b.euler) out += name + " changed its genus; ";
     if (std::abs(b.volume_mm3 / a.volume_mm3 - 1) > 0.05 && !is_named(after.warnings, a.label) &&
         after.level == SurfaceLevel::enhanced)
-      out += name + " changed its volume by " + std::to_string(b.volume_mm3 / a.volume_mm3 - 1) +
-             " without a warning; ";
+      out +=
+          name + " changed its volume by " + std::to_string(b.volume_mm3 / a.volume_mm3 - 1) + " without a warning; ";
   }
   return out;
 }
@@ -84,8 +83,8 @@ TEST(EnhanceComplex, KeepsRandomStacksClosedAndFreeOfIntersections) {
 
 namespace {
 
-/// How far neighbouring triangles bend on average, with edges of 2 mm, on a slanted ball of voxels of 1 mm: of each `step` voxels
-/// in a row only the first was looked at.
+/// How far neighbouring triangles bend on average, with edges of 2 mm, on a slanted ball of voxels of 1 mm: of each
+/// `step` voxels in a row only the first was looked at.
 std::vector<double> bends_of_ball(int step, const std::vector<int>& passes) {
   const int n = 24;
   LabelVolume v;
@@ -105,7 +104,9 @@ std::vector<double> bends_of_ball(int step, const std::vector<int>& passes) {
     o.smooth_passes = count;
     const EnhanceResult r = enhance(s.complex(), o);
     EXPECT_EQ(broken(s.complex(), r), "") << count;
-    EXPECT_NEAR(surface_of(check_surface(r.complex), 1).volume_mm3 / surface_of(check_surface(s.complex()), 1).volume_mm3, 1, 0.005);
+    EXPECT_NEAR(
+        surface_of(check_surface(r.complex), 1).volume_mm3 / surface_of(check_surface(s.complex()), 1).volume_mm3, 1,
+        0.005);
     bends.push_back(mean_bend_deg(r.complex));
   }
   return bends;
@@ -138,8 +139,8 @@ TEST(EnhanceComplex, GivesTheSameBytesWhateverTheThreadCount) {
 }
 
 TEST(EnhanceComplex, OneVoxelStaysAsASmallClosedShape) {
-  const Stitched s = stitch_volume(
-      volume_of({{"0000", "0000", "0000"}, {"0000", "0100", "0000"}, {"0000", "0000", "0000"}}), 0.5);
+  const Stitched s =
+      stitch_volume(volume_of({{"0000", "0000", "0000"}, {"0000", "0100", "0000"}, {"0000", "0000", "0000"}}), 0.5);
   for (double edge : {0.5, 2.0, 50.0}) {
     EnhanceOptions o = options_of(s.stack);
     o.edge_length_mm = edge;
@@ -221,8 +222,8 @@ TEST(EnhanceComplex, ACubeKeepsItsVolumeAndCorners) {
   for (int corner = 0; corner < 8; ++corner) {
     double nearest = 1e9;
     for (const Vec3& p : r.complex.points)
-      nearest = std::min(
-          nearest, norm(p - Vec3{corner & 1 ? 10.0 : 0.0, corner & 2 ? 10.0 : 0.0, corner & 4 ? 10.0 : 0.0}));
+      nearest =
+          std::min(nearest, norm(p - Vec3{corner & 1 ? 10.0 : 0.0, corner & 2 ? 10.0 : 0.0, corner & 4 ? 10.0 : 0.0}));
     EXPECT_LT(nearest, 0.4) << corner;
   }
 }
@@ -257,7 +258,8 @@ TEST(EnhanceComplex, ATargetOfTetrahedraMakesEdgesLongerAndSaysSo) {
   o.edge_max_mm = 1.0;
   const InterfaceComplex c = ball(10, 4);
   const EnhanceResult fine = enhance(c, o);
-  EXPECT_NEAR(static_cast<double>(fine.expected_triangles) / static_cast<double>(fine.complex.triangles.size()), 1, 0.25);
+  EXPECT_NEAR(static_cast<double>(fine.expected_triangles) / static_cast<double>(fine.complex.triangles.size()), 1,
+              0.25);
   EXPECT_EQ(fine.coarsened, 1);
   o.target_tets = fine.expected_tets / 4;
   const EnhanceResult coarse = enhance(c, o);

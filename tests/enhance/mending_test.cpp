@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "checks.h"
-#include "sections/extract.h"
 #include "enhance/enhance.h"
 #include "enhance/local_operations.h"
 #include "enhance/separate.h"
 #include "enhance_shapes.h"
+#include "sections/extract.h"
 #include "sections/polygons.h"
 #include "stitch/stitch.h"
 
@@ -58,10 +58,8 @@ void insert_point(InterfaceComplex& c, int triangle, const Vec3& p) {
   for (int k = 0; k < 3; ++k) {
     InterfaceTriangle part = t;
     part.v = {t.v[k], t.v[(k + 1) % 3], n};
-    if (k == 0)
-      c.triangles[triangle] = part;
-    else
-      c.triangles.push_back(part);
+    if (k == 0) c.triangles[triangle] = part;
+    else c.triangles.push_back(part);
   }
 }
 
@@ -167,10 +165,14 @@ TEST(EnhanceMending, ATipOnALoopOfThreeEdgesCanBeReplacedByATriangle) {
 }
 
 TEST(EnhanceMending, APleatIsCutOutAndWhatIsThickStays) {
-  // One vertex of a flat face lies beyond its neighbour, a little above it: three layers. A spike is a part of the body.
+  // One vertex of a flat face lies beyond its neighbour, a little above it: three layers. A spike is a part of the
+  // body.
   for (const bool spike : {false, true}) {
     InterfaceComplex c = cube(20, 20);
-    const auto v = static_cast<std::int32_t>(std::find_if(c.points.begin(), c.points.end(), [](const Vec3& p) { return p.x == 10 && p.y == 10 && p.z == 20; }) - c.points.begin());
+    const auto v =
+        static_cast<std::int32_t>(std::find_if(c.points.begin(), c.points.end(),
+                                               [](const Vec3& p) { return p.x == 10 && p.y == 10 && p.z == 20; }) -
+                                  c.points.begin());
     c.points[v] = spike ? Vec3{10, 10, 23} : Vec3{11.15, 10, 20.05};
     const double volume = surface_of(check_surface(c), 1).volume_mm3;
     ASSERT_EQ(check_surface(c).self_intersections, 0u);

@@ -1,4 +1,5 @@
-// The parts of the enhancement on their own, each against what is known exactly: contact of triangles, the guard, the reference, the sizes.
+// The parts of the enhancement on their own, each against what is known exactly: contact of triangles, the guard, the
+// reference, the sizes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,22 +20,35 @@ namespace {
 using Point = std::array<std::int64_t, 3>;
 using Triangle = std::array<Point, 3>;
 
-Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Point times(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-std::int64_t dot_of(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-int sign(std::int64_t x) { return (x > 0) - (x < 0); }
-int side(const Triangle& t, const Point& p) { return sign(dot_of(times(minus(t[1], t[0]), minus(t[2], t[0])), minus(p, t[0]))); }
+Point minus(const Point& a, const Point& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Point times(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+std::int64_t dot_of(const Point& a, const Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+int sign(std::int64_t x) {
+  return (x > 0) - (x < 0);
+}
+int side(const Triangle& t, const Point& p) {
+  return sign(dot_of(times(minus(t[1], t[0]), minus(t[2], t[0])), minus(p, t[0])));
+}
 
 /// p in the plane of t: is it inside or on the rim?
 bool holds(const Triangle& t, const Point& p) {
   const Point n = times(minus(t[1], t[0]), minus(t[2], t[0]));
   int least = 1;
-  for (int i = 0; i < 3; ++i) least = std::min(least, sign(dot_of(times(minus(t[(i + 1) % 3], t[i]), minus(p, t[i])), n)));
+  for (int i = 0; i < 3; ++i)
+    least = std::min(least, sign(dot_of(times(minus(t[(i + 1) % 3], t[i]), minus(p, t[i])), n)));
   return least >= 0;
 }
 
 bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& d, const Point& normal) {
-  const auto turn = [&](const Point& p, const Point& q, const Point& r) { return sign(dot_of(times(minus(q, p), minus(r, p)), normal)); };
+  const auto turn = [&](const Point& p, const Point& q, const Point& r) {
+    return sign(dot_of(times(minus(q, p), minus(r, p)), normal));
+  };
   const auto between = [](const Point& p, const Point& q, const Point& r) {  // r on the line p q
     for (int i = 0; i < 3; ++i)
       if (r[i] < std::min(p[i], q[i]) || r[i] > std::max(p[i], q[i])) return false;
@@ -42,7 +56,8 @@ bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& 
   };
   const int s = turn(a, b, c), t = turn(a, b, d), u = turn(c, d, a), v = turn(c, d, b);
   if (s * t < 0 && u * v < 0) return true;
-  return (s == 0 && between(a, b, c)) || (t == 0 && between(a, b, d)) || (u == 0 && between(c, d, a)) || (v == 0 && between(c, d, b));
+  return (s == 0 && between(a, b, c)) || (t == 0 && between(a, b, d)) || (u == 0 && between(c, d, a)) ||
+         (v == 0 && between(c, d, b));
 }
 
 bool segment_meets(const Point& a, const Point& b, const Triangle& t) {
@@ -74,7 +89,8 @@ bool oracle(const Triangle& s, const Triangle& t) {
 
 Corners3 corners_of(const Triangle& t) {
   Corners3 c;
-  for (int i = 0; i < 3; ++i) c[i] = {static_cast<double>(t[i][0]), static_cast<double>(t[i][1]), static_cast<double>(t[i][2])};
+  for (int i = 0; i < 3; ++i)
+    c[i] = {static_cast<double>(t[i][0]), static_cast<double>(t[i][1]), static_cast<double>(t[i][2])};
   return c;
 }
 
@@ -82,8 +98,12 @@ TEST(TriangleContact, AgreesWithAnOracleInWholeNumbers) {
   std::mt19937 random(7);
   std::size_t meet = 0, apart = 0;
   for (int i = 0; i < 60000; ++i) {
-    const int range = i % 3 == 0 ? 2 : 6, height = i % 5 == 0 ? 1 : range;  // small ranges: many touch, some are coplanar
-    const auto point = [&] { return Point{static_cast<int>(random() % range), static_cast<int>(random() % range), static_cast<int>(random() % height)}; };
+    // small ranges: many touch, some are coplanar
+    const int range = i % 3 == 0 ? 2 : 6, height = i % 5 == 0 ? 1 : range;
+    const auto point = [&] {
+      return Point{static_cast<int>(random() % range), static_cast<int>(random() % range),
+                   static_cast<int>(random() % height)};
+    };
     const Triangle s = {point(), point(), point()}, t = {point(), point(), point()};
     const auto flat = [](const Triangle& x) { return times(minus(x[1], x[0]), minus(x[2], x[0])) == Point{0, 0, 0}; };
     if (flat(s) || flat(t)) continue;
@@ -95,12 +115,15 @@ TEST(TriangleContact, AgreesWithAnOracleInWholeNumbers) {
       ASSERT_GT(near.squared, 0) << "pair " << i;
       ASSERT_NEAR(dot(near.on_s - near.on_t, near.on_s - near.on_t), near.squared, 1e-9);
       for (int k = 0; k < 20; ++k) {  // no two points of them are nearer
-        const double a = (random() % 1000) / 999.0, b = (random() % 1000) / 999.0 * (1 - a), c = (random() % 1000) / 999.0, d = (random() % 1000) / 999.0 * (1 - c);
+        const double a = (random() % 1000) / 999.0, b = (random() % 1000) / 999.0 * (1 - a),
+                     c = (random() % 1000) / 999.0, d = (random() % 1000) / 999.0 * (1 - c);
         const Corners3 p = corners_of(s), q = corners_of(t);
         const Vec3 x = (1 - a - b) * p[0] + (a * p[1] + b * p[2]), y = (1 - c - d) * q[0] + (c * q[1] + d * q[2]);
         ASSERT_GE(dot(x - y, x - y), near.squared - 1e-9) << "pair " << i;
       }
-      if (certainly_apart(corners_of(s), corners_of(t), 0.5)) { ASSERT_GE(near.squared, 0.25 - 1e-9) << "pair " << i; }
+      if (certainly_apart(corners_of(s), corners_of(t), 0.5)) {
+        ASSERT_GE(near.squared, 0.25 - 1e-9) << "pair " << i;
+      }
     }
     ++(expected ? meet : apart);
   }
@@ -182,7 +205,8 @@ TEST(Reference, IsNearerToABallThanItsTrianglesAreAndKnowsItsNormals) {
     ASSERT_TRUE(foot);
     bulged = std::max(bulged, std::abs(norm(foot->point) - radius));
     flat = std::max(flat, std::abs(radius + 0.5 - foot->distance_mm - radius));
-    turned = std::max(turned, std::acos(std::min(1.0, std::abs(dot(foot->normal, (1 / norm(foot->point)) * foot->point)))));
+    turned =
+        std::max(turned, std::acos(std::min(1.0, std::abs(dot(foot->normal, (1 / norm(foot->point)) * foot->point)))));
   }
   EXPECT_GT(flat, 0.04);           // the sagitta of its triangles
   EXPECT_LT(bulged, 0.35 * flat);  // the reference bulges over them

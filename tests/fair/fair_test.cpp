@@ -8,8 +8,8 @@
 #include "base/parallel.h"
 #include "checks.h"
 #include "fair/fair_labels.h"
-#include "sections/volume_sections.h"
 #include "random_stacks.h"
+#include "sections/volume_sections.h"
 #include "validate/check_fidelity.h"
 
 namespace stackmesh {
@@ -54,7 +54,8 @@ Fidelity judge(const InterfaceComplex& c, const std::function<bool(const Interfa
                const std::function<std::pair<double, Vec3>(Vec3)>& truth) {
   Fidelity f;
   for (const InterfaceTriangle& t : c.triangles) {
-    const Vec3 &a = c.points[t.v[0]], &b = c.points[t.v[1]], &d = c.points[t.v[2]], n = cross(b - a, d - a), m = (1 / 3.0) * (a + b + d);
+    const Vec3 &a = c.points[t.v[0]], &b = c.points[t.v[1]], &d = c.points[t.v[2]], n = cross(b - a, d - a),
+               m = (1 / 3.0) * (a + b + d);
     const double area = 0.5 * norm(n);
     if (!(area > 0) || !counts(t, m)) continue;
     const auto [distance, normal] = truth(m);
@@ -67,7 +68,9 @@ Fidelity judge(const InterfaceComplex& c, const std::function<bool(const Interfa
   return f;
 }
 Fidelity judge_ball(const InterfaceComplex& c, double r) {
-  return judge(c, [](const auto&, Vec3) { return true; }, [&](Vec3 p) { return std::make_pair(norm(p - kOff) - r, (1 / norm(p - kOff)) * (p - kOff)); });
+  return judge(
+      c, [](const auto&, Vec3) { return true; },
+      [&](Vec3 p) { return std::make_pair(norm(p - kOff) - r, (1 / norm(p - kOff)) * (p - kOff)); });
 }
 
 TEST(Fairing, ABallIsRoundInsteadOfStepped) {
@@ -99,7 +102,9 @@ TEST(Fairing, ThickSlicesAreRoundBetweenTheSlices) {
 
 /// How far a ball of thick slices reaches, below and above, mm beyond its poles, with what is `inside` it.
 std::array<double, 2> poles_off(double r, double slices_from, double inside) {
-  LabelVolume volume = voxelise(r + 9, {0.8, 0.8, 3}, [=](Vec3 p) { return norm(p) < inside ? 2 : norm(p) < r ? 1 : 0; });
+  LabelVolume volume = voxelise(r + 9, {0.8, 0.8, 3}, [=](Vec3 p) {
+    return norm(p) < inside ? 2 : norm(p) < r ? 1 : 0;
+  });
   const double shift = slices_from - std::remainder(volume.origin_mm.z, 3.0);  // where the slices lie, against the ball
   volume.origin_mm.z += shift;
   for (int k = 0, n = 0; k < volume.size[2]; ++k)
@@ -121,14 +126,19 @@ TEST(Fairing, ABallOfThickSlicesReachesItsPolesWhereverTheSlicesLie) {
   // Poles are 0.3 to 2.9 mm beyond the last slice; half a gap would be 1.5 for all.
   for (double at : {-1.2, -0.8, -0.3, 0.2, 0.7, 1.1})
     for (double inside : {0.0, 17.0})
-      for (double off : poles_off(20, at, inside)) EXPECT_NEAR(off, 0, 0.55) << "slices from " << at << ", inside " << inside;
+      for (double off : poles_off(20, at, inside))
+        EXPECT_NEAR(off, 0, 0.55) << "slices from " << at << ", inside " << inside;
 }
 
 TEST(Fairing, AnObliquePlaneWhoseTraceRunsAlongAnAxisHasNoTerraces) {
   const Vec3 u = {0, std::sin(0.5), std::cos(0.5)};
-  const LabelVolume volume = voxelise(18, {1, 1, 1}, [&](Vec3 p) { return norm(p - kOff) > 15 ? 0 : dot(p - kOff, u) > 3 ? 2 : 1; });
-  const Fidelity f = judge(stitch_faired(volume).complex(), [](const InterfaceTriangle& t, Vec3 p) { return t.below + t.above == 3 && norm(p - kOff) < 11; },
-                           [&](Vec3 p) { return std::make_pair(dot(p - kOff, u) - 3, u); });
+  const LabelVolume volume = voxelise(18, {1, 1, 1}, [&](Vec3 p) {
+    return norm(p - kOff) > 15 ? 0 : dot(p - kOff, u) > 3 ? 2 : 1;
+  });
+  const Fidelity f = judge(
+      stitch_faired(volume).complex(),
+      [](const InterfaceTriangle& t, Vec3 p) { return t.below + t.above == 3 && norm(p - kOff) < 11; },
+      [&](Vec3 p) { return std::make_pair(dot(p - kOff, u) - 3, u); });
   EXPECT_GT(f.area_mm2, 200);
   EXPECT_LT(f.distance_mm, 0.1);
   EXPECT_LT(f.normal_deg, 3);  // along the pixels: 30
@@ -145,7 +155,9 @@ TEST(Fairing, AThinTubeKeepsItsVolume) {
 
 TEST(Fairing, AWallOfOneVoxelStaysAWall) {
   // Two balls with a wall of one to two voxels between them: both of its sheets are kept apart.
-  const LabelVolume volume = voxelise(14, {1, 1, 1}, [](Vec3 p) { return norm(p - kOff) < 9 ? 2 : norm(p - kOff) < 10.5 ? 1 : 0; });
+  const LabelVolume volume = voxelise(14, {1, 1, 1}, [](Vec3 p) {
+    return norm(p - kOff) < 9 ? 2 : norm(p - kOff) < 10.5 ? 1 : 0;
+  });
   const Stitched s = stitch_faired(volume);
   EXPECT_EQ(defects(s.complex()), "");
   double nearest = 1e9;
@@ -167,7 +179,8 @@ TEST(Fairing, ScaleAndThreadsDoNotShow) {
   FairOptions one, two;
   one.threads = 1;
   two.threads = 2;
-  const FairedLabels a = fair_labels(volume, 2, one, quiet), b = fair_labels(volume, 2, two, quiet), c = fair_labels(twice, 2, one, quiet);
+  const FairedLabels a = fair_labels(volume, 2, one, quiet), b = fair_labels(volume, 2, two, quiet),
+                     c = fair_labels(twice, 2, one, quiet);
   ASSERT_FALSE(a.surface.points.empty());
   ASSERT_EQ(a.surface.points.size(), b.surface.points.size());
   ASSERT_EQ(a.surface.points.size(), c.surface.points.size());
@@ -183,17 +196,20 @@ TEST(Fairing, AMirrorImageHasTheSameVolumes) {
   LabelVolume mirror = volume;
   for (int k = 0; k < volume.size[2]; ++k)
     for (int j = 0; j < volume.size[1]; ++j)
-      for (int i = 0; i < volume.size[0]; ++i) mirror.voxels[volume.index(volume.size[0] - 1 - i, j, k)] = volume.voxels[volume.index(i, j, k)];
+      for (int i = 0; i < volume.size[0]; ++i)
+        mirror.voxels[volume.index(volume.size[0] - 1 - i, j, k)] = volume.voxels[volume.index(i, j, k)];
   const Stitched a = stitch_faired(volume), b = stitch_faired(mirror);
   EXPECT_EQ(defects(a.complex()), "");
   EXPECT_EQ(defects(b.complex()), "");
   const SurfaceCheck mine = check_surface(a.complex()), other = check_surface(b.complex());
-  for (const LabelSurface& l : mine.labels) EXPECT_NEAR(l.volume_mm3, surface_of(other, l.label).volume_mm3, 0.02 * l.volume_mm3) << "label " << l.label;
+  for (const LabelSurface& l : mine.labels)
+    EXPECT_NEAR(l.volume_mm3, surface_of(other, l.label).volume_mm3, 0.02 * l.volume_mm3) << "label " << l.label;
 }
 
 const std::string kPieces = "pieces of label ";
 
-/// What is wrong with a random stack that was faired: open, crossing, a piece lost or joined, a voxel centre with another label.
+/// What is wrong with a random stack that was faired: open, crossing, a piece lost or joined, a voxel centre with
+/// another label.
 std::string problem_of(std::uint64_t seed, double band_px, bool filled) {
   try {
     const LabelVolume volume = random_volume(seed);
@@ -206,7 +222,8 @@ std::string problem_of(std::uint64_t seed, double band_px, bool filled) {
     std::string out = defects(s.complex());
     if (!out.empty()) return out;
     if (filled)
-      if (const FillResult r = fill(s.complex()); r.status != FillResult::Status::verified) return "not filled: " + r.message;
+      if (const FillResult r = fill(s.complex()); r.status != FillResult::Status::verified)
+        return "not filled: " + r.message;
     if (band_px > 0.5) return "";
     FidelityOptions options;
     options.threads = 1;
@@ -214,8 +231,10 @@ std::string problem_of(std::uint64_t seed, double band_px, bool filled) {
     options.face_samples = options.surface_samples = 10;
     for (const LabelFidelity& f : check_fidelity(s.complex(), volume, options)) {
       if (f.input_components > 0 && !f.components_match)
-        out += kPieces + std::to_string(f.label) + " has " + std::to_string(f.components) + " pieces for " + std::to_string(f.input_components) + " components; ";
-      if (f.input_components > 0 && f.dice < 1) out += "label " + std::to_string(f.label) + " has a Dice of " + std::to_string(f.dice) + "; ";
+        out += kPieces + std::to_string(f.label) + " has " + std::to_string(f.components) + " pieces for " +
+               std::to_string(f.input_components) + " components; ";
+      if (f.input_components > 0 && f.dice < 1)
+        out += "label " + std::to_string(f.label) + " has a Dice of " + std::to_string(f.dice) + "; ";
     }
     return out;
   } catch (const std::exception& e) {
@@ -223,10 +242,12 @@ std::string problem_of(std::uint64_t seed, double band_px, bool filled) {
   }
 }
 
-/// @param other_pieces of noise in far slices, a few stacks in a thousand get a piece more or less than their voxels have
+/// @param other_pieces of noise in far slices, a few stacks in a thousand get a piece more or less than their voxels
+/// have
 std::string problems_of(std::size_t count, double band_px, std::size_t fill_every, std::size_t other_pieces = 0) {
   std::vector<std::string> found(count);
-  parallel_for(count, 0, [&](std::size_t i) { found[i] = problem_of(i, band_px, fill_every > 0 && i % fill_every == 0); });
+  parallel_for(count, 0,
+               [&](std::size_t i) { found[i] = problem_of(i, band_px, fill_every > 0 && i % fill_every == 0); });
   std::string out;
   std::size_t failures = 0, pieces = 0;
   for (std::size_t i = 0; i < count; ++i)
@@ -240,9 +261,13 @@ std::size_t stacks() {
   return text != nullptr ? static_cast<std::size_t>(std::atoll(text)) : 300;
 }
 
-TEST(RandomFairedStacks, StayClosedWholeAndTrueToEveryVoxelCentre) { EXPECT_EQ(problems_of(stacks(), 0.5, 10, stacks() / 100), ""); }
+TEST(RandomFairedStacks, StayClosedWholeAndTrueToEveryVoxelCentre) {
+  EXPECT_EQ(problems_of(stacks(), 0.5, 10, stacks() / 100), "");
+}
 
-TEST(RandomFairedStacks, StayClosedWithAWideBand) { EXPECT_EQ(problems_of(stacks() / 4, 1.5, 0), ""); }
+TEST(RandomFairedStacks, StayClosedWithAWideBand) {
+  EXPECT_EQ(problems_of(stacks() / 4, 1.5, 0), "");
+}
 
 }  // namespace
 }  // namespace stackmesh

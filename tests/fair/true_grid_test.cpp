@@ -1,9 +1,9 @@
 // Labels that are stored finer than they were made.
+#include "fair/true_grid.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "fair/true_grid.h"
 
 namespace stackmesh {
 namespace {
@@ -28,15 +28,20 @@ LabelVolume resampled(const LabelVolume& v, std::array<double, 3> spacing, doubl
   std::array<double, 3> low;
   for (int a = 0; a < 3; ++a) {
     const double extent = v.size[a] * v.spacing_mm[a];
-    low[a] = -0.5 * v.spacing_mm[a] + (skip + 0.5) * spacing[a];  // of the first centre, from the centre of v's first voxel
+    // of the first centre, from the centre of v's first voxel
+    low[a] = -0.5 * v.spacing_mm[a] + (skip + 0.5) * spacing[a];
     out.size[a] = static_cast<int>(std::floor((extent - skip * spacing[a]) / spacing[a]));
   }
   out.origin_mm = v.origin_mm + Vec3{low[0], low[1], low[2]};
   out.voxels.clear();
-  const auto nearest = [&](int axis, int i) { return std::min(v.size[axis] - 1, static_cast<int>(std::floor((low[axis] + i * spacing[axis]) / v.spacing_mm[axis] + 0.5))); };
+  const auto nearest = [&](int axis, int i) {
+    return std::min(v.size[axis] - 1,
+                    static_cast<int>(std::floor((low[axis] + i * spacing[axis]) / v.spacing_mm[axis] + 0.5)));
+  };
   for (int k = 0; k < out.size[2]; ++k)
     for (int j = 0; j < out.size[1]; ++j)
-      for (int i = 0; i < out.size[0]; ++i) out.voxels.push_back(v.voxels[v.index(nearest(0, i), nearest(1, j), nearest(2, k))]);
+      for (int i = 0; i < out.size[0]; ++i)
+        out.voxels.push_back(v.voxels[v.index(nearest(0, i), nearest(1, j), nearest(2, k))]);
   return out;
 }
 
@@ -49,7 +54,8 @@ void expect_ball(const TrueGrid& grid, double tolerance_mm) {
     for (int j = 0; j < g.size[1]; ++j)
       for (int i = 0; i < g.size[0]; ++i) {
         const Vec3 p = g.world(i, j, k), q = (1 / 2.0) * (p - v.origin_mm);
-        const int a = static_cast<int>(std::lround(q.x)), b = static_cast<int>(std::lround(q.y)), c = static_cast<int>(std::lround(q.z));
+        const int a = static_cast<int>(std::lround(q.x)), b = static_cast<int>(std::lround(q.y)),
+                  c = static_cast<int>(std::lround(q.z));
         if (a < 0 || b < 0 || c < 0 || a > 23 || b > 23 || c > 23) continue;
         different += g.voxels[g.index(i, j, k)] != v.voxels[v.index(a, b, c)];
         ASSERT_LT(norm(v.world(a, b, c) - p), tolerance_mm);
@@ -88,7 +94,8 @@ TEST(TrueGrid, NothingIsFoundWhereNothingIsToBeFound) {
   LabelVolume box = ball();  // flat sides are no evidence
   for (int k = 0; k < 24; ++k)
     for (int j = 0; j < 24; ++j)
-      for (int i = 0; i < 24; ++i) box.voxels[box.index(i, j, k)] = i >= 4 && i < 16 && j >= 6 && j < 18 && k >= 2 && k < 20;
+      for (int i = 0; i < 24; ++i)
+        box.voxels[box.index(i, j, k)] = i >= 4 && i < 16 && j >= 6 && j < 18 && k >= 2 && k < 20;
   EXPECT_FALSE(find_true_grid(box, 1));
   LabelVolume empty = ball();
   std::fill(empty.voxels.begin(), empty.voxels.end(), std::uint16_t{0});

@@ -99,8 +99,10 @@ TEST(EstimateError, WhatGrowsWithoutEndHasALargeError) {
 TEST_F(AccuracyTest, CantileverIsRefinedUntilItIsAccurateAndTheReportSaysSo) {
   NEEDS_CCX();
   write_mesh("m.vtu", block(8, 2, 2, {1, 1, 1}, [](int, int, int) { return 1; }));
-  law(R"("*": {"E_MPa": 1000, "poisson": 0})", R"({"fixed": [{"set": "left"}], "loaded": [{"set": "right", "force_N": [0, 1, 0]}]})");
-  const std::string sets = "m.vtu --select left=plane:0,0,0,1,0,0 --select right=plane:8,0,0,1,0,0 --materials law.json --report r.json ";
+  law(R"("*": {"E_MPa": 1000, "poisson": 0})",
+      R"({"fixed": [{"set": "left"}], "loaded": [{"set": "right", "force_N": [0, 1, 0]}]})");
+  const std::string sets =
+      "m.vtu --select left=plane:0,0,0,1,0,0 --select right=plane:8,0,0,1,0,0 --materials law.json --report r.json ";
   fem(sets + "--accuracy 5% --order 1 -o one.inp");
   nlohmann::json a = report()["fem"]["accuracy"];
   EXPECT_FALSE(a["reached"]) << a;
@@ -121,18 +123,22 @@ TEST_F(AccuracyTest, CantileverIsRefinedUntilItIsAccurateAndTheReportSaysSo) {
 
 TEST_F(AccuracyTest, RefusalsComeBeforeAnythingIsMeshed) {
   write_mesh("m.vtu", block(2, 2, 2, {1, 1, 1}, [](int, int, int) { return 1; }));
-  law(R"("*": {"E_MPa": 1000, "poisson": 0})", R"({"fixed": [{"set": "left"}], "loaded": [{"set": "right", "force_N": [0, 1, 0]}]})");
+  law(R"("*": {"E_MPa": 1000, "poisson": 0})",
+      R"({"fixed": [{"set": "left"}], "loaded": [{"set": "right", "force_N": [0, 1, 0]}]})");
   refuses(2, "m.vtu --materials law.json --accuracy 0%", {"accuracy"});
   refuses(2, "m.vtu --materials law.json --accuracy much", {"--accuracy"});
-  EXPECT_EQ(run("PATH=/nowhere '" STACKMESH_PROGRAM "' fem m.vtu --materials law.json --accuracy 5% -o x.inp", "fem"), 2);
+  EXPECT_EQ(run("PATH=/nowhere '" STACKMESH_PROGRAM "' fem m.vtu --materials law.json --accuracy 5% -o x.inp", "fem"),
+            2);
   EXPECT_NE(read("fem.log").find("no ccx in PATH"), std::string::npos) << read("fem.log");
   if (!has_ccx()) return;
   refuses(2, "m.vtu --accuracy 5%", {"load case"});
 }
 
 TEST_F(AccuracyTest, ResultFilesThatAreCutOffAreRefused) {
-  write("a.frd", "    1C\n    2C                             1\n -1         1 1.00000E+00 2.00000E+00 3.00000E+00\n -3\n"
-                 " -4  DISP        4    1\n -5  D1          1    2    1    0\n -1         1 1.00000E-01-2.00000E-01 0.00000E+00\n -3\n 9999\n");
+  write("a.frd",
+        "    1C\n    2C                             1\n -1         1 1.00000E+00 2.00000E+00 3.00000E+00\n -3\n"
+        " -4  DISP        4    1\n -5  D1          1    2    1    0\n -1         1 1.00000E-01-2.00000E-01 "
+        "0.00000E+00\n -3\n 9999\n");
   const FrdResult r = read_frd(at("a.frd"));
   EXPECT_EQ(r.numbers, std::vector<std::int64_t>{1});
   EXPECT_EQ(r.fields.at("DISP")[0][1], -0.2);

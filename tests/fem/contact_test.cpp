@@ -24,7 +24,8 @@ TEST_P(ContactOrders, TwoTiedBlocksAnswerAsOneBlock) {
   TetMesh mesh = block(2, 2, 4, {1, 1, 1.5}, [](int, int, int k) { return k < 2 ? 1 : 2; });
   disturb(mesh, 2, 2, 4, {1, 1, 1.5});  // the nodes between the blocks too
   write_mesh("patch.vtu", mesh);
-  law(kOneMaterial, R"({"fixed": [{"set": "label_1_cap_low", "axes": "z"}, {"set": "side_x", "axes": "x"}, {"set": "side_y", "axes": "y"}],
+  law(kOneMaterial,
+      R"({"fixed": [{"set": "label_1_cap_low", "axes": "z"}, {"set": "side_x", "axes": "x"}, {"set": "side_y", "axes": "y"}],
                         "loaded": [{"set": "label_2_cap_high", "force_N": [0, 0, 40]}]})");
   fem("patch.vtu --parts A=1 B=2" + order() + kSides + "--materials law.json -o patch.inp");
   EXPECT_NE(read("patch.inp").find("*EQUATION"), std::string::npos);
@@ -39,11 +40,16 @@ TEST_P(ContactOrders, ThreeTiedPartsThatMeetInALineAnswerAsOneBlock) {
   TetMesh mesh = block(2, 2, 4, {1, 1, 1.5}, [](int i, int, int k) { return i == 0 ? 1 : k < 2 ? 2 : 3; });
   disturb(mesh, 2, 2, 4, {1, 1, 1.5});
   write_mesh("three.vtu", mesh);
-  law(kOneMaterial, R"({"fixed": [{"set": "cap_low", "axes": "z"}, {"set": "side_x", "axes": "x"}, {"set": "side_y", "axes": "y"}],
+  law(kOneMaterial,
+      R"({"fixed": [{"set": "cap_low", "axes": "z"}, {"set": "side_x", "axes": "x"}, {"set": "side_y", "axes": "y"}],
                         "loaded": [{"set": "cap_high", "force_N": [0, 0, 40]}]})");
-  fem("three.vtu --parts A=3 B=1 C=2" + order() + kSides + "--materials law.json -o three.inp -o three.feb -o three.bdf");
+  fem("three.vtu --parts A=3 B=1 C=2" + order() + kSides +
+      "--materials law.json -o three.inp -o three.feb -o three.bdf");
   for (const char* deck : {"three.feb", "three.bdf"})
-    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' " + std::string(deck) + " tied", "deck"), 0) << read("deck.log");
+    EXPECT_EQ(
+        run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' " + std::string(deck) + " tied", "deck"),
+        0)
+        << read("deck.log");
   EXPECT_NE(read("three.feb").find("type=\"tied-elastic\""), std::string::npos);
   solve("three");
   expect_answer("uniform three.frd 1000 0.3 10 6");
@@ -52,11 +58,14 @@ TEST_P(ContactOrders, ThreeTiedPartsThatMeetInALineAnswerAsOneBlock) {
 TEST_P(ContactOrders, BlocksInContactBearAPressure) {
   NEEDS_CCX();
   write_mesh("press.vtu", block(2, 2, 4, {1, 1, 1.5}, [](int, int, int k) { return k < 2 ? 1 : 2; }));
-  law(kOneMaterial, R"({"fixed": [{"set": "label_1_cap_low", "axes": "z"}, {"set": "side_x", "axes": "x"}, {"set": "side_y", "axes": "y"}],
+  law(kOneMaterial,
+      R"({"fixed": [{"set": "label_1_cap_low", "axes": "z"}, {"set": "side_x", "axes": "x"}, {"set": "side_y", "axes": "y"}],
                         "loaded": [{"set": "label_2_cap_high", "pressure_MPa": 10}]})",
       R"("contact": [{"parts": ["B", "A"], "type": "contact", "stiffness_MPa_mm": 20000}], )");
-  fem("press.vtu --parts A=1 B=2" + order() + kSides + "--materials law.json -o press.inp -o press.feb --report r.json");
-  EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' press.feb", "deck"), 0) << read("deck.log");
+  fem("press.vtu --parts A=1 B=2" + order() + kSides +
+      "--materials law.json -o press.inp -o press.feb --report r.json");
+  EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' press.feb", "deck"), 0)
+      << read("deck.log");
   const auto pair = report().at("fem").at("pairs")[0];
   EXPECT_EQ(pair.at("contact"), "contact");
   EXPECT_EQ(pair.at("stiffness_mpa_mm"), 20000);
@@ -75,7 +84,9 @@ TEST_P(ContactOrders, BlocksInContactCannotBePulledButTiedOnesCan) {
     solve(kind);
   }
   expect_answer("reaction contact.frd 6 0 0.001");  // of a force of about 40 N
-  EXPECT_NE(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_answers.py' reaction tie.frd 6 0 35", "answer"), 0);
+  EXPECT_NE(
+      run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_answers.py' reaction tie.frd 6 0 35", "answer"),
+      0);
 }
 
 TEST_P(ContactOrders, FrictionHoldsWhatSlidingAloneWouldNot) {
@@ -86,7 +97,8 @@ TEST_P(ContactOrders, FrictionHoldsWhatSlidingAloneWouldNot) {
                         "loaded": [{"set": "label_2_cap_high", "pressure_MPa": 10}, {"set": "label_2_cap_high", "force_N": [4, 0, 0]}]})",
       R"("contact": [{"parts": ["A", "B"], "type": "contact", "friction": 0.5}], )");
   fem("rub.vtu --parts A=1 B=2" + order() + "--materials law.json -o rub.inp --report r.json");
-  EXPECT_NEAR(report().at("fem").at("pairs")[0].at("stiffness_mpa_mm").get<double>(), 50 * 1000 / ((1 + 1 + std::sqrt(2.0)) / 3), 1);
+  EXPECT_NEAR(report().at("fem").at("pairs")[0].at("stiffness_mpa_mm").get<double>(),
+              50 * 1000 / ((1 + 1 + std::sqrt(2.0)) / 3), 1);
   solve("rub");
   expect_answer("reaction rub.frd 6 40 0.001");
 }
@@ -136,25 +148,33 @@ TEST_F(ContactData, EightTiedLabelsMoveAsTheWholeDoes) {
   // Structures of a brain that meet in lines and points: every node that parts share is tied.
   const std::string data = STACKMESH_SHARED_DATA "/ventricles_mri_itksnap/MRIcrop-seg.nii.gz";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "NOT TESTED: " << data << " is not there";
-  law(R"("*": {"E_MPa": 1, "poisson": 0.3})", R"({"fixed": [{"set": "around"}], "loaded": [{"set": "inner", "force_N": [0.1, 0.05, -0.2]}]})");
-  const std::string common = "'" + data + "' --order 1 --edge-length 4 --select around=normal:0,0,-1,85 --select inner=of:7 --materials law.json ";
+  law(R"("*": {"E_MPa": 1, "poisson": 0.3})",
+      R"({"fixed": [{"set": "around"}], "loaded": [{"set": "inner", "force_N": [0.1, 0.05, -0.2]}]})");
+  const std::string common =
+      "'" + data +
+      "' --order 1 --edge-length 4 --select around=normal:0,0,-1,85 --select inner=of:7 --materials law.json ";
   fem(common + "--parts A=1 B=2 C=3 D=4 E=5 F=6 G=7 H=8 -o parts.inp -o parts.bdf");
   fem(common + "-o whole.inp");
   solve("parts");
   EXPECT_EQ(read("ccx.log").find("WARNING"), std::string::npos);
   solve("whole");
   expect_answer("same parts.frd whole.frd");
-  EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' parts.bdf tied", "deck"), 0) << read("deck.log");
+  EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' parts.bdf tied", "deck"), 0)
+      << read("deck.log");
 }
 
 TEST_F(ContactData, AVertebraThatOnlyContactHoldsFindsItsRest) {
   NEEDS_CCX();
-  // T11's rest on T12: its faces slant, so friction of 0.1 does not hold it under 500 N, and without springs no increment converges.
+  // T11's rest on T12: its faces slant, so friction of 0.1 does not hold it under 500 N, and without springs no
+  // increment converges.
   const std::string data = STACKMESH_SHARED_DATA "/torso_totalseg/torso_3mm_61labels.nii.gz";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "NOT TESTED: " << data << " is not there";
-  law(R"("*": {"E_MPa": 500, "poisson": 0.3})", R"({"fixed": [{"set": "low"}], "loaded": [{"set": "high", "force_N": [0, 0, -500]}]})",
+  law(R"("*": {"E_MPa": 500, "poisson": 0.3})",
+      R"({"fixed": [{"set": "low"}], "loaded": [{"set": "high", "force_N": [0, 0, -500]}]})",
       R"("contact": [{"parts": ["A", "B"], "type": "contact", "friction": 0.1, "stabilise": 0.01}], )");
-  fem("'" + data + "' --label 32,33 --edge-length 6 --order 1 --parts A=33 B=32 --materials law.json --select 'low=of:32&normal:0,0,-1,40' --select "
+  fem("'" + data +
+      "' --label 32,33 --edge-length 6 --order 1 --parts A=33 B=32 --materials law.json --select "
+      "'low=of:32&normal:0,0,-1,40' --select "
       "'high=of:33&normal:0,0,1,40' -o t.inp");
   solve("t");
   EXPECT_EQ(read("ccx.log").find("too many cutbacks"), std::string::npos);
@@ -163,7 +183,8 @@ TEST_F(ContactData, AVertebraThatOnlyContactHoldsFindsItsRest) {
 TEST_F(ContactData, SpringsThatStabiliseBearAlmostNothing) {
   NEEDS_CCX();
   write_mesh("two.vtu", block(2, 2, 4, {1, 1, 1}, [](int, int, int k) { return k < 2 ? 1 : 2; }));
-  const std::string load = R"({"fixed": [{"set": "label_1_cap_low"}], "loaded": [{"set": "label_2_cap_high", "force_N": [0, 0, -40]}]})";
+  const std::string load =
+      R"({"fixed": [{"set": "label_1_cap_low"}], "loaded": [{"set": "label_2_cap_high", "force_N": [0, 0, -40]}]})";
   law(kOneMaterial, load, R"("contact": [{"parts": ["A", "B"], "type": "contact"}], )");
   refuses(3, "two.vtu --parts A=1 B=2 --materials law.json", {"1 of 2 bodies are not supported"});
   law(kOneMaterial, load, R"("contact": [{"parts": ["A", "B"], "type": "contact", "stabilise": 0.0001}], )");
@@ -179,7 +200,8 @@ TEST_F(ContactInput, BadContactsAreRefused) {
   write_mesh("two.vtu", block(2, 2, 4, {1, 1, 1}, [](int, int, int k) { return k < 2 ? 1 : 2; }));
   const auto with = [&](const std::string& contact) { law(kOneMaterial, "{}", R"("contact": )" + contact + ", "); };
   with(R"([{"parts": ["A", "C"], "type": "tie"}])");
-  refuses(3, "two.vtu --parts A=1 B=2 --materials law.json", {"parts that do not touch", "'A' and 'C'", "these touch: A-B"});
+  refuses(3, "two.vtu --parts A=1 B=2 --materials law.json",
+          {"parts that do not touch", "'A' and 'C'", "these touch: A-B"});
   refuses(3, "two.vtu --materials law.json", {"parts that do not touch", "--parts A=1,3 B=2,4"});
   with(R"([{"parts": ["A", "B"], "type": "tie"}, {"parts": ["B", "A"], "type": "none"}])");
   refuses(3, "two.vtu --parts A=1 B=2 --materials law.json", {"a pair of parts twice"});

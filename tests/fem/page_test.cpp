@@ -10,14 +10,16 @@ namespace {
 class FemPage : public solver::SolverTest {};
 
 TEST_F(FemPage, FiguresAreThoseOfARun) {
-  const int code = run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_page.py' '" STACKMESH_SOURCE_DIR "' '" STACKMESH_PROGRAM "' '" STACKMESH_SHARED_DATA
-                       "/torso_totalseg'", "page");
+  const int code = run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_page.py' '" STACKMESH_SOURCE_DIR
+                       "' '" STACKMESH_PROGRAM "' '" STACKMESH_SHARED_DATA "/torso_totalseg'",
+                       "page");
   if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: " << read("page.log");
   EXPECT_EQ(code, 0) << read("page.log");
 }
 
 TEST_F(FemPage, SchemaAndProgramTakeAndRefuseTheSame) {
-  const std::string head = R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"}, "labels": )";
+  const std::string head =
+      R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"}, "labels": )";
   const std::string linear = R"({"*": {"E_MPa": 5, "poisson": 0.3}})";
   std::vector<std::string> laws;
   const auto material = [&](const std::string& m) { laws.push_back(head + R"({"1": )" + m + "}}"); };
@@ -35,14 +37,19 @@ TEST_F(FemPage, SchemaAndProgramTakeAndRefuseTheSame) {
   material(R"({"model": "neo_hooke", "C10_MPa": 1, "bulk_MPa": 100, "density_t_mm3": 1e-9})");
   material(R"({"model": "neo_hooke", "C10_MPa": 1})");
   material(R"({"model": "mooney_rivlin", "C10_MPa": 1, "C01_MPa": 0.1, "bulk_MPa": 100})");
-  material(R"({"model": "mooney_rivlin", "C10_MPa": 1, "C01_MPa": 0.1, "bulk_MPa": 100, "axes": {"fibre": [1, 0, 0], "across": [0, 1, 0]}})");
-  material(R"({"model": "orthotropic", "E_MPa": [3, 2, 1], "poisson": [0, 0, 0], "G_MPa": [1, 1, 1], "axes": {"fibre": [1, 0, 0], "across": [0, 1, 0]}})");
+  material(
+      R"({"model": "mooney_rivlin", "C10_MPa": 1, "C01_MPa": 0.1, "bulk_MPa": 100, "axes": {"fibre": [1, 0, 0], "across": [0, 1, 0]}})");
+  material(
+      R"({"model": "orthotropic", "E_MPa": [3, 2, 1], "poisson": [0, 0, 0], "G_MPa": [1, 1, 1], "axes": {"fibre": [1, 0, 0], "across": [0, 1, 0]}})");
   material(R"({"model": "orthotropic", "E_MPa": [3, 2, 1], "poisson": [0, 0, 0], "G_MPa": [1, 1, 1]})");
-  material(R"({"model": "holzapfel", "C10_MPa": 1, "k1_MPa": 1, "k2": 1, "bulk_MPa": 9, "fibres": {"from": "a", "to": "b", "along": [0, 0, 1]}})");
-  material(R"({"model": "holzapfel", "C10_MPa": 1, "k1_MPa": 1, "k2": 1, "kappa": 0.5, "bulk_MPa": 9, "fibres": {"from": "a", "to": "b", "along": [0, 0, 1]}})");
+  material(
+      R"({"model": "holzapfel", "C10_MPa": 1, "k1_MPa": 1, "k2": 1, "bulk_MPa": 9, "fibres": {"from": "a", "to": "b", "along": [0, 0, 1]}})");
+  material(
+      R"({"model": "holzapfel", "C10_MPa": 1, "k1_MPa": 1, "k2": 1, "kappa": 0.5, "bulk_MPa": 9, "fibres": {"from": "a", "to": "b", "along": [0, 0, 1]}})");
   acts("{}");
   acts(R"({"fixed": []})");
-  acts(R"({"fixed": [{"set": "a", "axes": "xz"}], "moved": [{"set": "b", "mm": [null, 1, 0]}], "loaded": [{"set": "c", "force_N": [1, 2, 3], "moment_Nmm": [1, 0, 0]}]})");
+  acts(
+      R"({"fixed": [{"set": "a", "axes": "xz"}], "moved": [{"set": "b", "mm": [null, 1, 0]}], "loaded": [{"set": "c", "force_N": [1, 2, 3], "moment_Nmm": [1, 0, 0]}]})");
   acts(R"({"fixed": [{"set": "a", "axes": "w"}]})");
   acts(R"({"fixed": [{"axes": "x"}]})");
   acts(R"({"loaded": [{"set": "c", "force_N": [1, 2, 3], "pressure_MPa": 1}]})");
@@ -50,7 +57,8 @@ TEST_F(FemPage, SchemaAndProgramTakeAndRefuseTheSame) {
   acts(R"({"gravity_mm_s2": [0, 0, -9810], "large_displacements": true, "increments": 4})");
   acts(R"({"gravity_mm_s2": [0, -9810]})");
   acts(R"({"increments": 0})");
-  acts(R"({"points": [{"name": "P", "set": "a", "mm": [0, 0, 0]}], "loaded": [{"point": "P", "moment_Nmm": [1, 0, 0]}], "fixed": [{"point": "P", "rotations": "xy"}]})");
+  acts(
+      R"({"points": [{"name": "P", "set": "a", "mm": [0, 0, 0]}], "loaded": [{"point": "P", "moment_Nmm": [1, 0, 0]}], "fixed": [{"point": "P", "rotations": "xy"}]})");
   acts(R"({"points": [{"name": "P", "set": "a"}]})");
   acts(R"({"points": [{"name": "P", "set": "a", "mm": [0, 0, 0], "coupling": "loose"}]})");
   acts(R"({"springs": [{"set": "a", "N_per_mm": [1, 0, 0]}, {"set": "b", "MPa_per_mm": 2}]})");
@@ -74,7 +82,12 @@ TEST_F(FemPage, SchemaAndProgramTakeAndRefuseTheSame) {
     names += std::string(" '" STACKMESH_TESTDATA "/") + name + "'";
     said += "valid\n";
   }
-  ASSERT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/law_schema.py' '" STACKMESH_SOURCE_DIR "/docs/law.schema.json'" + names, "schema"), 0) << read("schema.log");
+  ASSERT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/law_schema.py' '" STACKMESH_SOURCE_DIR
+                "/docs/law.schema.json'" +
+                    names,
+                "schema"),
+            0)
+      << read("schema.log");
   std::istringstream lines(read("schema.log")), ours(said);
   std::size_t i = 0;
   for (std::string line, mine; std::getline(ours, mine); ++i) {

@@ -6,11 +6,11 @@
 #include "blocks.h"
 #include "fem/boundary_faces.h"
 #include "fem/element_quality.h"
-#include "fem/solver_names.h"
-#include "image/read_label_table.h"
 #include "fem/load_case.h"
 #include "fem/name_sets.h"
+#include "fem/solver_names.h"
 #include "fem/split_parts.h"
+#include "image/read_label_table.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"
 
@@ -29,7 +29,9 @@ const NodeSet* nodes_of(const SolverModel& m, const std::string& name) {
     if (s.name == name) return &s;
   return nullptr;
 }
-std::size_t count_nodes(const SolverModel& m, const std::string& name) { return nodes_of(m, name) ? nodes_of(m, name)->nodes.size() : 0; }
+std::size_t count_nodes(const SolverModel& m, const std::string& name) {
+  return nodes_of(m, name) ? nodes_of(m, name)->nodes.size() : 0;
+}
 
 void expect_error(const std::function<void()>& call, ErrorKind kind, const std::vector<std::string>& parts) {
   try {
@@ -39,7 +41,8 @@ void expect_error(const std::function<void()>& call, ErrorKind kind, const std::
     const std::string text = e.what();
     EXPECT_EQ(static_cast<int>(e.kind()), static_cast<int>(kind)) << text;
     EXPECT_EQ(text.find('\n'), std::string::npos);
-    for (const std::string& p : parts) EXPECT_NE(text.find(p), std::string::npos) << "'" << p << "' is not in: " << text;
+    for (const std::string& p : parts)
+      EXPECT_NE(text.find(p), std::string::npos) << "'" << p << "' is not in: " << text;
   }
 }
 
@@ -80,20 +83,23 @@ TEST(NameSets, CountsOfABlockOfTwoLabels) {
 
 TEST(NameSets, OuterAndInnerWallAndBaseOfACupComeApart) {
   // A cup: a block with a hole from above, two cells deep.
-  const TetMesh cup = block(4, 4, 3, {1, 1, 1}, [](int i, int j, int k) { return k > 0 && i > 0 && i < 3 && j > 0 && j < 3 ? 0 : 1; });
+  const TetMesh cup =
+      block(4, 4, 3, {1, 1, 1}, [](int i, int j, int k) { return k > 0 && i > 0 && i < 3 && j > 0 && j < 3 ? 0 : 1; });
   SetOptions options;
   options.sharp_deg = 100;  // the block's own edges are no feature: walls stay whole
   const SolverModel m = name_sets(cup, {{1, "wall"}}, options);
-  EXPECT_EQ(faces_of(m, "wall_cap_high"), 2u * (16 - 4));       // the rim
+  EXPECT_EQ(faces_of(m, "wall_cap_high"), 2u * (16 - 4));  // the rim
   EXPECT_EQ(faces_of(m, "wall_cap_low"), 2u * 16);
-  EXPECT_EQ(faces_of(m, "wall_outer_1"), 2u * 4 * 4 * 3);       // epicardium
-  EXPECT_EQ(faces_of(m, "wall_outer_2"), 2u * (4 * 2 * 2 + 4)); // endocardium with its floor
+  EXPECT_EQ(faces_of(m, "wall_outer_1"), 2u * 4 * 4 * 3);        // epicardium
+  EXPECT_EQ(faces_of(m, "wall_outer_2"), 2u * (4 * 2 * 2 + 4));  // endocardium with its floor
   EXPECT_EQ(faces_of(m, "wall_outer_3"), 0u);
 }
 
 TEST(NameSets, AnIslandBetweenOtherLabelsJoinsTheNearestPatch) {
   // On the side x low a ring of label 2 lies round one cell of label 1.
-  const TetMesh ring = block(3, 8, 8, {1, 1, 1}, [](int i, int j, int k) { return i == 0 && std::abs(j - 4) <= 1 && std::abs(k - 4) <= 1 && !(j == 4 && k == 4) ? 2 : 1; });
+  const TetMesh ring = block(3, 8, 8, {1, 1, 1}, [](int i, int j, int k) {
+    return i == 0 && std::abs(j - 4) <= 1 && std::abs(k - 4) <= 1 && !(j == 4 && k == 4) ? 2 : 1;
+  });
   SetOptions options;
   options.sharp_deg = 100;
   const SolverModel m = name_sets(ring, {{1, "wall"}, {2, "ring"}}, options);
@@ -103,7 +109,8 @@ TEST(NameSets, AnIslandBetweenOtherLabelsJoinsTheNearestPatch) {
 }
 
 TEST(NameSets, ALoosePieceKeepsItsOwnPatchHoweverSmall) {
-  const TetMesh crumb = block(13, 10, 10, {1, 1, 1}, [](int i, int j, int k) { return i < 10 || (i == 12 && j == 5 && k == 5) ? 1 : 0; });
+  const TetMesh crumb =
+      block(13, 10, 10, {1, 1, 1}, [](int i, int j, int k) { return i < 10 || (i == 12 && j == 5 && k == 5) ? 1 : 0; });
   SetOptions options;
   options.sharp_deg = 100;
   const SolverModel m = name_sets(crumb, {{1, "wall"}}, options);
@@ -117,7 +124,8 @@ TEST(NameSets, AVoidsWallIsASetOfItsOwn) {
   TetMesh cup = block(4, 4, 3, {1, 1, 1}, [&](int i, int j, int k) { return is_hole(i, j, k) ? 0 : j < 2 ? 1 : 3; });
   for (const BoundaryFace& f : boundary_faces(cup)) {
     const Vec3 out = f.centre + 0.3 * f.normal;
-    const bool hole = out.z < 3 && is_hole(static_cast<int>(std::floor(out.x)), static_cast<int>(std::floor(out.y)), static_cast<int>(std::floor(out.z)));
+    const bool hole = out.z < 3 && is_hole(static_cast<int>(std::floor(out.x)), static_cast<int>(std::floor(out.y)),
+                                           static_cast<int>(std::floor(out.z)));
     if (f.out == 0) cup.faces.push_back({f.v, f.in, hole ? 7 : 0});
   }
   const SolverModel m = name_sets(cup, {{1, "wall"}, {3, "septum"}, {7, "blood"}}, {});
@@ -128,7 +136,8 @@ TEST(NameSets, AVoidsWallIsASetOfItsOwn) {
   EXPECT_EQ(faces_of(m, "wall_outer"), 2u * (8 + 2 * 2 * 3 + 4 * 3 + 8 - 2));
   EXPECT_EQ(faces_of(m, "wall_to_septum"), faces_of(m, "septum_to_wall"));
   for (InterfaceTriangle& f : cup.faces) f.above = f.above == 7 ? 2 : 0;
-  EXPECT_EQ(faces_of(name_sets(cup, {{1, "wall"}, {3, "septum"}}, {}), "wall_inner_2"), 2u * (4 * 2 + 2));  // no name: its number
+  // no name: its number
+  EXPECT_EQ(faces_of(name_sets(cup, {{1, "wall"}, {3, "septum"}}, {}), "wall_inner_2"), 2u * (4 * 2 + 2));
 }
 
 TEST(NameSets, RoundEndHasNoCap) {
@@ -174,7 +183,8 @@ double area_of(const SolverModel& m, const FaceSet& set) {
   return area;
 }
 
-/// However often a mesh is cut, a set is the same piece of its surface: also one selected by the faces' centres, of which some are in and some of the faces cut from them are not.
+/// However often a mesh is cut, a set is the same piece of its surface: also one selected by the faces' centres, of
+/// which some are in and some of the faces cut from them are not.
 TEST(NameSets, OfACutMeshAreThoseOfTheMeshBefore) {
   SetOptions options;
   options.selections = {"ball=sphere:1,1,2,1.6", "front=plane:0,0,4,0,0,1"};
@@ -236,7 +246,8 @@ TEST(Parts, NodesAreSharedWithinAPartAndDoubledBetweenParts) {
 }
 
 TEST(Parts, JoiningEqualNodesUndoesTheSplit) {
-  const TetMesh mesh = raise_order(block(2, 2, 2, {1, 1, 1}, [](int i, int j, int) { return i == 0 ? 1 : 2 + j; })).mesh;
+  const TetMesh mesh =
+      raise_order(block(2, 2, 2, {1, 1, 1}, [](int i, int j, int) { return i == 0 ? 1 : 2 + j; })).mesh;
   SetOptions options;
   options.parts = {{"A", {1}}, {"B", {2}}};
   SolverModel split = name_sets(mesh, {}, options);
@@ -254,7 +265,8 @@ TEST(Parts, TripleLinesHaveACopyForEachPart) {
   options.parts = {{"A", {1}}, {"B", {2}}};  // label 3 is the rest
   const SolverModel m = name_sets(mesh, {}, options);
   EXPECT_EQ(count_nodes(m, "triple_A_B_rest"), 3u * 3);  // a line of three nodes along z
-  EXPECT_EQ(m.mesh.points.size(), 27u + 6 + 3 + 3 + 3);  // A|others: 9 doubled, B|rest: 6 more of which 3 are on the line
+  // A|others: 9 doubled, B|rest: 6 more of which 3 are on the line
+  EXPECT_EQ(m.mesh.points.size(), 27u + 6 + 3 + 3 + 3);
 }
 
 TEST(Parts, WithinAPartInterfacesStayShared) {
@@ -286,13 +298,13 @@ std::size_t selected(const std::string& text, Space space = Space::lps) {
 }
 
 TEST(Selections, PickTheFacesTheyDescribe) {
-  EXPECT_EQ(selected("s=box:-1,-1,3.99,9,9,9"), 2u * 5 * 2);                 // the top
-  EXPECT_EQ(selected("s=plane:0,0,0,0,0,2"), 2u * 5 * 2);                    // the bottom, by its plane
-  EXPECT_EQ(selected("s=plane:3,0,0,1,0,0"), 2u * 2 * 4);                    // the interface, once
-  EXPECT_EQ(selected("s=normal:0,-1,0,20"), 2u * 5 * 4);                     // one side, by its normals
+  EXPECT_EQ(selected("s=box:-1,-1,3.99,9,9,9"), 2u * 5 * 2);  // the top
+  EXPECT_EQ(selected("s=plane:0,0,0,0,0,2"), 2u * 5 * 2);     // the bottom, by its plane
+  EXPECT_EQ(selected("s=plane:3,0,0,1,0,0"), 2u * 2 * 4);     // the interface, once
+  EXPECT_EQ(selected("s=normal:0,-1,0,20"), 2u * 5 * 4);      // one side, by its normals
   EXPECT_EQ(selected("s=normal:0,-1,0,20&of:9"), 2u * 2 * 4);
   EXPECT_EQ(selected("s=normal:0,-1,0,20&of:left lung"), 0u + 2 * 3 * 4);
-  EXPECT_EQ(selected("s=sphere:0,0,0,0.8&normal:0,0,-1,10"), 2u);            // the corner's two triangles
+  EXPECT_EQ(selected("s=sphere:0,0,0,0.8&normal:0,0,-1,10"), 2u);  // the corner's two triangles
   EXPECT_EQ(selected("s=in:left_lung_cap_low&box:0,0,-1,1,1,1"), 2u);
 }
 
@@ -300,7 +312,8 @@ TEST(Selections, MarkupsAreTurnedIntoTheMeshsFrame) {
   const std::string path = testing::TempDir() + "points.mrk.json";
   const auto write = [&](const std::string& system, const std::string& position) {
     std::ofstream(path) << R"({"markups": [{"type": "Fiducial", "coordinateSystem": ")" << system
-                        << R"(", "controlPoints": [{"id": "1", "position": )" << position << R"(, "positionStatus": "defined"}]}]})";
+                        << R"(", "controlPoints": [{"id": "1", "position": )" << position
+                        << R"(, "positionStatus": "defined"}]}]})";
   };
   write("LPS", "[0.5, 0.5, 0]");
   EXPECT_EQ(selected("s=points:" + path + ",0.5"), 2u);
@@ -308,20 +321,23 @@ TEST(Selections, MarkupsAreTurnedIntoTheMeshsFrame) {
   EXPECT_EQ(selected("s=points:" + path + ",0.5"), 2u);
   write("RAS", "[0.5, 0.5, 0]");
   EXPECT_EQ(selected("s=points:" + path + ",0.5", Space::ras), 2u);
-  expect_error([&] { selected("s=points:" + path + ",0.1"); }, ErrorKind::input, {"selection 's' is empty", "nearest face"});
+  expect_error([&] { selected("s=points:" + path + ",0.1"); }, ErrorKind::input,
+               {"selection 's' is empty", "nearest face"});
   std::ofstream(path) << "no json";
   expect_error([&] { selected("s=points:" + path + ",0.5"); }, ErrorKind::input, {"no Slicer markups file", path});
 }
 
 TEST(Selections, EmptyOnesNameTheNearestCandidate) {
-  expect_error([] { selected("s=box:10,0,0,12,2,4"); }, ErrorKind::input, {"selection 's' is empty", "misses box by 5 mm", "Left_Lung_2_outer"});
+  expect_error([] { selected("s=box:10,0,0,12,2,4"); }, ErrorKind::input,
+               {"selection 's' is empty", "misses box by 5 mm", "Left_Lung_2_outer"});
   expect_error([] { selected("s=plane:0,0,-2,0,0,1"); }, ErrorKind::input, {"misses plane by 1.99 mm"});
-  expect_error([] { selected("s=normal:0,0,1,5&of:4&in:Left_Lung_2_outer"); }, ErrorKind::input, {"selection 's' is empty"});
+  expect_error([] { selected("s=normal:0,0,1,5&of:4&in:Left_Lung_2_outer"); }, ErrorKind::input,
+               {"selection 's' is empty"});
 }
 
 TEST(Selections, BadTextsAreUsageErrors) {
-  for (const std::string text : {"box:0,0,0,1,1,1", "s=", "s=cube:1", "s=box:1,2", "s=box:0,0,0,1,1,x", "s=sphere:0,0,0,-1", "s=plane:0,0,0,0,0,0",
-                                 "s=normal:1,0,0,0", "2s=of:4", "a b=of:4"})
+  for (const std::string text : {"box:0,0,0,1,1,1", "s=", "s=cube:1", "s=box:1,2", "s=box:0,0,0,1,1,x",
+                                 "s=sphere:0,0,0,-1", "s=plane:0,0,0,0,0,0", "s=normal:1,0,0,0", "2s=of:4", "a b=of:4"})
     expect_error([&] { selected(text); }, ErrorKind::usage, {"--select"});
   expect_error([] { selected("s=of:77"); }, ErrorKind::input, {"label '77' is not in the mesh", "9 (Left_Lung_2)"});
   expect_error([] { selected("s=in:nothing"); }, ErrorKind::input, {"set 'nothing'"});
@@ -336,7 +352,8 @@ TEST(LabelTable, ReadsSlicersAndItkSnapsForm) {
   EXPECT_EQ(table[0].number, 4);
   EXPECT_EQ(table[0].name, "femur_left");
   EXPECT_EQ(*table[0].colour, (std::array<std::uint8_t, 3>{255, 0, 10}));
-  std::ofstream(path) << "################\n# ITK-SnAP Label Description File\n    0     0    0    0        0  0  0    \"Clear Label\"\n"
+  std::ofstream(path) << "################\n# ITK-SnAP Label Description File\n    0     0    0    0        0  0  0    "
+                         "\"Clear Label\"\n"
                          "    4   255    0    0        1  1  1    \"Left femur\"\n";
   table = read_label_table(path);
   ASSERT_EQ(table.size(), 1u);
@@ -361,7 +378,13 @@ TEST(LabelTable, BadTablesSayTheLine) {
 }
 
 TEST(SolverNames, AreCleanAndDistinctWhateverTheCase) {
-  const auto names = solver_names({{1, "a b"}, {2, "A_B"}, {3, ""}, {4, "9 lives"}, {5, std::string(90, 'x')}, {6, std::string(90, 'X')}, {7, "nall"}});
+  const auto names = solver_names({{1, "a b"},
+                                   {2, "A_B"},
+                                   {3, ""},
+                                   {4, "9 lives"},
+                                   {5, std::string(90, 'x')},
+                                   {6, std::string(90, 'X')},
+                                   {7, "nall"}});
   std::set<std::string> lower;
   for (const LabelInfo& l : names) {
     std::string text = l.name;
@@ -385,7 +408,8 @@ TEST(ElementQuality, ListsElementsThatAreInsideOut) {
   std::swap(mesh.tets[7][0], mesh.tets[7][1]);
   TetMesh second = raise_order(mesh).mesh;
   EXPECT_TRUE(element_quality(second).non_positive.empty());
-  second.points[second.mid[3][0]] = second.points[second.tets[3][3]];  // an edge that runs through the element's far corner
+  // an edge that runs through the element's far corner
+  second.points[second.mid[3][0]] = second.points[second.tets[3][3]];
   const auto bad = element_quality(second).non_positive;
   EXPECT_TRUE(std::find(bad.begin(), bad.end(), 3) != bad.end());
   // A regular tet has a scaled Jacobian of 1.
@@ -447,7 +471,8 @@ TEST(LoadCase, RefusesWhatDoesNotFit) {
   SolverModel m = name_sets(two_labels(), kNames, {});
   LoadCase load;
   load.always.held.push_back({"left_lung_cap", {0.0, 0.0, 0.0}});
-  expect_error([&] { apply_load_case(m, load, "law.json"); }, ErrorKind::input, {"'left_lung_cap'", "law.json", "left_lung_cap_low"});
+  expect_error([&] { apply_load_case(m, load, "law.json"); }, ErrorKind::input,
+               {"'left_lung_cap'", "law.json", "left_lung_cap_low"});
   load.always.held = {{"cap_low", {0.0, 0.0, 0.0}}, {"left_lung_cap_low", {std::nullopt, std::nullopt, 0.5}}};
   expect_error([&] { apply_load_case(m, load, "law.json"); }, ErrorKind::input, {"two different displacements"});
 }

@@ -39,8 +39,10 @@ class SolverTest : public ::testing::Test {
   }
   /// A law file of constant materials, in the units that every law file must state.
   std::string law(const std::string& labels, const std::string& load_case, const std::string& more = "") const {
-    return write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"}, "labels": {)" + labels +
-                                 "}, " + more + R"("load_case": )" + load_case + "}");
+    return write(
+        "law.json",
+        R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"}, "labels": {)" +
+            labels + "}, " + more + R"("load_case": )" + load_case + "}");
   }
   /// A shell command in the folder; its output goes to NAME.log.
   int run(const std::string& command, const std::string& name = "run") const {
@@ -51,13 +53,16 @@ class SolverTest : public ::testing::Test {
   void fem(const std::string& arguments) const {
     ASSERT_EQ(run("'" STACKMESH_PROGRAM "' fem " + arguments, "fem"), 0) << arguments << "\n" << read("fem.log");
   }
-  /// The program must refuse with that exit code and one line holding every part, and leave no file of the outputs' name.
+  /// The program must refuse with that exit code and one line holding every part, and leave no file of the outputs'
+  /// name.
   void refuses(int code, const std::string& arguments, const std::vector<std::string>& parts) const {
-    EXPECT_EQ(run("'" STACKMESH_PROGRAM "' fem " + arguments + " -o refused.inp", "fem"), code) << arguments << "\n" << read("fem.log");
+    EXPECT_EQ(run("'" STACKMESH_PROGRAM "' fem " + arguments + " -o refused.inp", "fem"), code) << arguments << "\n"
+                                                                                                << read("fem.log");
     const std::string text = read("fem.log");
     EXPECT_EQ(text.rfind("stackmesh: error: ", 0), 0u) << text;
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-    for (const std::string& p : parts) EXPECT_NE(text.find(p), std::string::npos) << "'" << p << "' is not in: " << text;
+    for (const std::string& p : parts)
+      EXPECT_NE(text.find(p), std::string::npos) << "'" << p << "' is not in: " << text;
     EXPECT_FALSE(std::filesystem::exists(at("refused.inp")));
   }
   static bool has_ccx() { return std::system("command -v ccx >/dev/null 2>&1") == 0; }
@@ -67,7 +72,8 @@ class SolverTest : public ::testing::Test {
     ASSERT_TRUE(std::filesystem::exists(at(deck + ".frd")));
   }
   void expect_answer(const std::string& arguments) const {
-    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_answers.py' " + arguments, "answer"), 0) << read("answer.log");
+    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/fem_answers.py' " + arguments, "answer"), 0)
+        << read("answer.log");
   }
   void write_mesh(const std::string& name, const stackmesh::TetMesh& mesh) const {
     stackmesh::AtomicFiles files;

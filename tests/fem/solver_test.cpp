@@ -1,6 +1,7 @@
 // CalculiX runs the decks unedited, and finds what is known beforehand.
-#include "blocks.h"
 #include "solver.h"
+
+#include "blocks.h"
 
 using namespace stackmesh;
 using blocks::block;
@@ -58,8 +59,10 @@ TEST_F(Solver, SkinBearsItsShareOfAStretchedBar) {
       R"("skins": {"1": {"E_MPa": 2000, "poisson": 0}}, )");
   for (const int order : {1, 2}) {
     const std::string name = "skin" + std::to_string(order);
-    fem("skin.vtu --order " + std::to_string(order) + " --skin 1=0.05 --materials law.json -o " + name + ".inp -o " + name + ".feb");
-    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' " + name + ".feb", "feb"), 0) << read("feb.log");
+    fem("skin.vtu --order " + std::to_string(order) + " --skin 1=0.05 --materials law.json -o " + name + ".inp -o " +
+        name + ".feb");
+    EXPECT_EQ(run("/usr/bin/python3 '" STACKMESH_SOURCE_DIR "/tests/python/decks.py' " + name + ".feb", "feb"), 0)
+        << read("feb.log");
     solve(name);
     // strain 0.001: 100 MPa * 4 mm2, and 2000 MPa on a perimeter of 8 mm times 0.05 mm
     expect_answer("reaction " + name + ".frd 4 1.2 0.01");
@@ -73,7 +76,9 @@ TEST_F(Solver, FemurPhantomFixedAtOneCapAndPressedAtTheOther) {
       R"({"fixed": [{"set": "bone_cap_low"}], "loaded": [{"set": "bone_cap_high", "force_N": [0, 0, -1000]}]})");
   write("names.txt", "1 bone 200 200 100 255\n2 marrow 200 100 100 255\n");
   for (const char* order : {"1", "2"}) {
-    fem("'" STACKMESH_TESTDATA "/femur.nii.gz' --merge --caps flat --edge-length 14 --interpolate 0 --names names.txt --materials law.json --order " +
+    fem("'" STACKMESH_TESTDATA
+        "/femur.nii.gz' --merge --caps flat --edge-length 14 --interpolate 0 --names names.txt --materials law.json "
+        "--order " +
         std::string(order) + " -o femur" + order + ".inp --report r.json");
     const auto f = report().at("fem");
     EXPECT_EQ(f.at("order"), std::stoi(order));
@@ -85,7 +90,8 @@ TEST_F(Solver, FemurPhantomFixedAtOneCapAndPressedAtTheOther) {
 
 TEST_F(Solver, CortexAndMarrowOfTheFemurPhantomRunWithTheLawOfTestdata) {
   NEEDS_CCX();
-  fem("'" STACKMESH_TESTDATA "/femur.nii.gz' --caps flat --edge-length 14 --interpolate 0 --order 1 --names '" STACKMESH_TESTDATA
+  fem("'" STACKMESH_TESTDATA
+      "/femur.nii.gz' --caps flat --edge-length 14 --interpolate 0 --order 1 --names '" STACKMESH_TESTDATA
       "/femur_names.ctbl' --materials '" STACKMESH_TESTDATA "/femur_law.json' -o femur.inp --report r.json");
   const auto f = report().at("fem");
   ASSERT_EQ(f.at("materials").size(), 2u);
@@ -98,14 +104,17 @@ TEST_F(Solver, CortexAndMarrowOfTheFemurPhantomRunWithTheLawOfTestdata) {
 TEST_F(Solver, TorsosFemursWithTheirCtMapped) {
   NEEDS_CCX();
   const std::string data = STACKMESH_SHARED_DATA "/torso_totalseg/";
-  if (!std::filesystem::exists(data + "ct_3mm.nii.gz")) GTEST_SKIP() << "NOT TESTED: " << data << "ct_3mm.nii.gz is not there";
+  if (!std::filesystem::exists(data + "ct_3mm.nii.gz"))
+    GTEST_SKIP() << "NOT TESTED: " << data << "ct_3mm.nii.gz is not there";
   auto j = nlohmann::json::parse(std::ifstream(STACKMESH_TESTDATA "/femur_ct_law.json"));
   for (const char* label : {"75", "76"}) {
     const std::string n = std::string("label_") + label;
-    j["load_case"] = {{"fixed", {{{"set", n + "_cap_low"}}}}, {"loaded", {{{"set", "top"}, {"force_N", {0, 0, -1000}}}}}};
+    j["load_case"] = {{"fixed", {{{"set", n + "_cap_low"}}}},
+                      {"loaded", {{{"set", "top"}, {"force_N", {0, 0, -1000}}}}}};
     write("law.json", j.dump());
     fem("'" + data + "torso_3mm_61labels.nii.gz' --label " + label + " --edge-length 8 --image '" + data +
-        "ct_3mm.nii.gz' --materials law.json --select 'top=normal:0,0,1,60&box:-400,-400,135,400,400,200' -o t" + label + ".inp --report r.json");
+        "ct_3mm.nii.gz' --materials law.json --select 'top=normal:0,0,1,60&box:-400,-400,135,400,400,200' -o t" +
+        label + ".inp --report r.json");
     const auto m = report().at("fem").at("materials")[0];
     EXPECT_GT(m.at("modulus_min_mpa"), 0);
     EXPECT_GT(m.at("materials"), 50);

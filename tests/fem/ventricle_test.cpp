@@ -12,7 +12,9 @@ TEST_F(Ventricle, IsInflatedThroughItsVoid) {
   write("names.txt", "1 wall 200 0 0 255\n2 cavity 0 0 200 255\n");
   law(R"("wall": {"model": "neo_hooke", "C10_MPa": 0.02, "bulk_MPa": 0.4, "density_t_mm3": 1.06e-9})",
       R"({"fixed": [{"set": "wall_cap_high"}], "loaded": [{"set": "wall_inner_cavity", "pressure_MPa": 0.00133}], "increments": 5})");
-  fem("'1=" + data + "epi_ED.cnt' '2=" + data + "endo_ED.cnt' --void cavity --names names.txt --edge-min 6 --edge-max 12 --order 1 --materials law.json --report r.json -o lv.inp -o lv.feb");
+  fem("'1=" + data + "epi_ED.cnt' '2=" + data +
+      "endo_ED.cnt' --void cavity --names names.txt --edge-min 6 --edge-max 12 --order 1 --materials law.json --report "
+      "r.json -o lv.inp -o lv.feb");
   const nlohmann::json r = report();
   for (const nlohmann::json& label : r.at("labels")) EXPECT_EQ(label.at("genus"), 0) << label;
   for (const nlohmann::json& v : r.at("verdicts")) EXPECT_NE(v.at("status"), "fail") << v;

@@ -1,5 +1,7 @@
-// The fuzzer of the pipeline without libFuzzer, for compilers that have none, and for the speed of an optimised build: inputs of a folder, changed at random.
-//   fuzz_plain SECONDS FOLDER [SEED] [FOUND]      what is found goes into FOUND (default: found); a crash leaves it there as `last`
+// The fuzzer of the pipeline without libFuzzer, for compilers that have none, and for the speed of an optimised build:
+// inputs of a folder, changed at random.
+//   fuzz_plain SECONDS FOLDER [SEED] [FOUND]      what is found goes into FOUND (default: found); a crash leaves it
+//   there as `last`
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -20,7 +22,8 @@ using namespace stackmesh::testing_support;
 using Bytes = std::vector<std::uint8_t>;
 
 void write(const std::filesystem::path& path, const Bytes& bytes) {
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 Bytes changed(const std::vector<Bytes>& corpus, std::mt19937_64& random) {
@@ -47,7 +50,8 @@ int main(int argc, char** argv) {
     std::ifstream file(entry.path(), std::ios::binary);
     corpus.push_back(Bytes{std::istreambuf_iterator<char>(file), {}});
   }
-  if (corpus.empty()) return std::fprintf(stderr, "fuzz_plain: error: no inputs in %s; name a folder that has some\n", argv[2]), 2;
+  if (corpus.empty())
+    return std::fprintf(stderr, "fuzz_plain: error: no inputs in %s; name a folder that has some\n", argv[2]), 2;
   const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
   const std::filesystem::path found = argc > 4 ? argv[4] : "found";
   std::filesystem::create_directories(found);

@@ -6,8 +6,8 @@
 #include "image_files.h"
 
 using namespace image_files;
-using stackmesh::LabelContours;
 using stackmesh::is_contour_input;
+using stackmesh::LabelContours;
 using stackmesh::read_contour_file;
 
 namespace {
@@ -31,9 +31,8 @@ TEST_F(ContourInput, IsToldByItsEnding) {
 }
 
 TEST_F(ContourInput, SectionsAreSortedAndEmptyOnesKept) {
-  const LabelContours f =
-      read_contour_file(write("a.cnt", "S 3\nv 4 z 2.5\n" + square + "v 0 z 1.25\nv 7 z -1e0\n" + square +
-                                           "{\n1 1\n2 1\n1 2.5\n}\n"));
+  const LabelContours f = read_contour_file(
+      write("a.cnt", "S 3\nv 4 z 2.5\n" + square + "v 0 z 1.25\nv 7 z -1e0\n" + square + "{\n1 1\n2 1\n1 2.5\n}\n"));
   ASSERT_EQ(f.sections.size(), 3u);
   EXPECT_EQ(f.sections[0].z_mm, -1);
   EXPECT_EQ(f.sections[1].z_mm, 1.25);
@@ -110,13 +109,11 @@ TEST_F(ContourInput, EveryTruncationIsAnError) {
 }
 
 TEST_F(ContourInput, CountsThatDisagreeWarn) {
-  const LabelContours more =
-      read_contour_file(write("a.cnt", "S 1\nv 3 z 0\n" + square + "v 4 z 1\n" + square));
+  const LabelContours more = read_contour_file(write("a.cnt", "S 1\nv 3 z 0\n" + square + "v 4 z 1\n" + square));
   EXPECT_EQ(more.sections.size(), 2u);
   EXPECT_TRUE(has_warning(more.warnings, "2 sections where its header says 1"));
   EXPECT_TRUE(has_warning(more.warnings, "4 vertices where 3"));
-  const LabelContours fewer =
-      read_contour_file(write("b.cnt", "S 2\nv 9 z 0\n" + square + "v 4 z 1\n" + square));
+  const LabelContours fewer = read_contour_file(write("b.cnt", "S 2\nv 9 z 0\n" + square + "v 4 z 1\n" + square));
   EXPECT_TRUE(has_warning(fewer.warnings, "4 vertices where 9"));
   refuse("S 3\nv 4 z 0\n" + square, {"truncated", "1 sections", "3"});
   refuse("S 1\nv 9 z 0\n" + square, {"truncated", "4 vertices", "section 1"});
@@ -125,8 +122,7 @@ TEST_F(ContourInput, CountsThatDisagreeWarn) {
 TEST_F(ContourInput, EqualHeightsAreAnError) {
   refuse("S 3\nv 4 z 1\n" + square + "v 4 z 0\n" + square + "v 4 z 1.0000000001\n" + square,
          {"same height", "sections 1 and 3"});
-  EXPECT_NO_THROW(
-      read_contour_file(write("a.cnt", "S 2\nv 4 z 1\n" + square + "v 4 z 1.00000001\n" + square)));
+  EXPECT_NO_THROW(read_contour_file(write("a.cnt", "S 2\nv 4 z 1\n" + square + "v 4 z 1.00000001\n" + square)));
 }
 
 TEST_F(ContourInput, MissingFileFolderAndNoContourAreErrors) {

@@ -196,8 +196,8 @@ const std::string lps_grid =
     "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n";
 
 inline Bytes metaimage(const std::string& type, const std::string& more, const Bytes& data) {
-  return "ObjectType = Image\nNDims = 3\nBinaryData = True\n" + more +
-         "DimSize = 3 2 2\nElementType = " + type + "\nElementDataFile = LOCAL\n" + data;
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\n" + more + "DimSize = 3 2 2\nElementType = " + type +
+         "\nElementDataFile = LOCAL\n" + data;
 }
 
 /// GIPL: big-endian bytes 3 x 2 x 2.
@@ -218,9 +218,8 @@ inline Bytes png_of_stream(int width, int height, int bits, int colour, const By
   };
   const Bytes palette = colour == 3 ? chunk("PLTE", Bytes("\0\0\0\xff\0\0\0\xff\0", 9)) : "";
   return Bytes("\x89PNG\r\n\x1a\n") +
-         chunk("IHDR", big<std::uint32_t>(width) + big<std::uint32_t>(height) +
-                           Bytes(1, static_cast<char>(bits)) + Bytes(1, static_cast<char>(colour)) +
-                           Bytes(3, '\0')) +
+         chunk("IHDR", big<std::uint32_t>(width) + big<std::uint32_t>(height) + Bytes(1, static_cast<char>(bits)) +
+                           Bytes(1, static_cast<char>(colour)) + Bytes(3, '\0')) +
          palette + chunk("iCCP", "bad profile") + chunk("IDAT", stream) + chunk("IEND", "");
 }
 /// `rows` holds the raw bytes of all rows.
@@ -258,8 +257,7 @@ inline Bytes tiff(int width, int height, int bits, const std::vector<Bytes>& pag
         {50838, 4, 1}};  // a tag of ImageJ's that libtiff does not know
     out += little<std::uint16_t>(11);
     for (const auto& e : entries)
-      out +=
-          little<std::uint16_t>(e[0]) + little<std::uint16_t>(e[1]) + little<std::uint32_t>(1) + little(e[2]);
+      out += little<std::uint16_t>(e[0]) + little<std::uint16_t>(e[1]) + little<std::uint32_t>(1) + little(e[2]);
     at = data + pages[p].size();
     out += little<std::uint32_t>(p + 1 < pages.size() ? at : 0) + pages[p];
   }

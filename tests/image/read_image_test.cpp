@@ -1,8 +1,9 @@
 // Intensities: where they lie in the world, slope and intercept, and what is refused.
+#include "image/read_image.h"
+
 #include <cmath>
 #include <limits>
 
-#include "image/read_image.h"
 #include "image_files.h"
 
 using namespace image_files;
@@ -27,7 +28,7 @@ TEST_F(ReadImage, KeepsNegativeValuesAndTheirPlaceInTheWorld) {
   EXPECT_EQ(v.kind, "nifti");
   // RAS (10 + 2 i, 20 + 3 j, 30 + 4 k) is LPS (-10 - 2 i, -20 - 3 j, 30 + 4 k).
   EXPECT_NEAR(*v.sample({-14, -23, 30}), 1500, 1e-9);
-  EXPECT_NEAR(*v.sample({-11, -20, 30}), -525, 1e-9);   // between -1000 and -50
+  EXPECT_NEAR(*v.sample({-11, -20, 30}), -525, 1e-9);  // between -1000 and -50
   EXPECT_NEAR(*v.sample({-10, -21.5, 32}), (-1000 + 7 + 1 + 4) / 4.0, 1e-9);
 }
 
@@ -55,7 +56,8 @@ TEST_F(ReadImage, Nifti2IsReadAsNifti1) {
       n.inter = -3;
       n.units = 3;  // micrometres
       const Bytes voxels = pack<std::int16_t>(twelve, big_endian);
-      const IntensityVolume one = read_image(write("one.nii", n.header() + voxels)), two = read_image(write("two.nii.gz", gzip(n.header2() + voxels)));
+      const IntensityVolume one = read_image(write("one.nii", n.header() + voxels)),
+                            two = read_image(write("two.nii.gz", gzip(n.header2() + voxels)));
       EXPECT_EQ(two.values, one.values);
       EXPECT_EQ(two.values[5], 7);
       EXPECT_EQ(two.size, one.size);
@@ -124,7 +126,8 @@ TEST_F(ReadImage, RefusesWhatIsNoImage) {
   std::vector<float> values(12, 1);
   values[4] = std::numeric_limits<float>::quiet_NaN();
   // (niftilib itself reads such a value as 0)
-  expect_error([&] { read_image(write("nan.nrrd", nrrd("float", lps_grid, pack<float>(values)))); }, {"not finite", "voxel (1, 1, 0)"});
+  expect_error([&] { read_image(write("nan.nrrd", nrrd("float", lps_grid, pack<float>(values)))); },
+               {"not finite", "voxel (1, 1, 0)"});
   expect_error([&] { read_image(write("cut.nii", (n.header() + pack<float>(values)).substr(0, 380))); }, {"cut.nii"});
 }
 

@@ -21,9 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 const std::string data = STACKMESH_SHARED_DATA;
 
-#define NEEDS_DATA()                     \
-  if (data.empty() || !fs::exists(data)) \
-  GTEST_SKIP() << "REAL DATA ABSENT (STACKMESH_SHARED_DATA): nothing was tested"
+#define NEEDS_DATA()                                                       \
+  if (data.empty() || !fs::exists(data))                                   \
+  GTEST_SKIP() << "REAL DATA ABSENT (STACKMESH_SHARED_DATA): nothing was " \
+                  "tested"
 
 TEST(RealData, EveryLabelVolumeIsReadAndTheCtIsNot) {
   NEEDS_DATA();
@@ -91,8 +92,7 @@ TEST(RealData, LargeLungsAreReadWithinMemory) {
   EXPECT_EQ(v.size, (std::array<int, 3>{512, 512, 630}));
   ASSERT_EQ(v.labels.size(), 3u);
   EXPECT_LT(after.ru_maxrss / 1024, 1200) << "MiB";
-  std::cout << "lungs 512 x 512 x 630: " << seconds << " s, peak of the process " << after.ru_maxrss / 1024
-            << " MiB\n";
+  std::cout << "lungs 512 x 512 x 630: " << seconds << " s, peak of the process " << after.ru_maxrss / 1024 << " MiB\n";
 }
 
 }  // namespace

@@ -78,8 +78,7 @@ TEST_F(Slices, OfDifferentSizesNameTheFile) {
 TEST_F(Slices, ColourIsRefusedUnlessGreyInTruth) {
   const LabelVolume v = read_label_volume(write("g.png", png(2, 1, 8, 2, Bytes("\4\4\4\0\0\0", 6))));
   EXPECT_EQ(number(v, 0, 0, 0), 4);
-  expect_unreadable(write("c.png", png(2, 1, 8, 2, Bytes("\4\4\4\4\5\4", 6))),
-                    {"colour image", "pixel (1, 0)"});
+  expect_unreadable(write("c.png", png(2, 1, 8, 2, Bytes("\4\4\4\4\5\4", 6))), {"colour image", "pixel (1, 0)"});
   expect_unreadable(write("p.png", png(2, 1, 8, 3, Bytes("\0\1", 2))), {"colour palette"});
   const LabelVolume opaque = read_label_volume(write("a.png", png(1, 1, 8, 6, Bytes("\4\4\4\xff", 4))));
   EXPECT_EQ(number(opaque, 0, 0, 0), 4);
@@ -94,8 +93,7 @@ TEST_F(Slices, DamagedFilesAreRefused) {
   expect_unreadable(write("f.png", short_png(4, 4, zlib(Bytes(20, '\1')).substr(0, 12))), {"damaged"});
   expect_unreadable(write("f.png", short_png(4, 4, "nonsense")), {"damaged"});
   const Bytes page = tiff(40, 40, 8, {Bytes(1600, '\1')});
-  for (std::size_t length :
-       {std::size_t{7}, std::size_t{20}, std::size_t{100}, page.size() - 800, page.size() - 1})
+  for (std::size_t length : {std::size_t{7}, std::size_t{20}, std::size_t{100}, page.size() - 800, page.size() - 1})
     expect_unreadable(write("d.tif", page.substr(0, length)), {"truncated"});
   const Bytes two = tiff(40, 40, 8, {Bytes(1600, '\1'), Bytes(1600, '\2')});
   expect_unreadable(write("e.tif", two.substr(0, two.size() - 800)), {"truncated", "page 2"});
@@ -131,15 +129,14 @@ Bytes mask(const std::vector<int>& values, const std::string& grid = lps_grid) {
 
 TEST_F(Masks, BecomeNamedLabelsInNaturalOrder) {
   write("m/rib_10.nrrd", mask({0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0}));
-  write("m/rib_2.nii.gz", gzip(Nifti{}.header() +
-                               pack<std::uint8_t>(std::vector<int>{0, 255, 0, 255, 0, 0, 0, 0, 0, 0, 0, 0})));
+  write("m/rib_2.nii.gz",
+        gzip(Nifti{}.header() + pack<std::uint8_t>(std::vector<int>{0, 255, 0, 255, 0, 0, 0, 0, 0, 0, 0, 0})));
   Bytes grid = "TransformMatrix = -1 0 0 0 -1 0 0 0 1\n";
-  write("m/aorta.mha", metaimage("MET_UCHAR", grid,
-                                 pack<std::uint8_t>(std::vector<int>{1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1})));
+  write("m/aorta.mha",
+        metaimage("MET_UCHAR", grid, pack<std::uint8_t>(std::vector<int>{1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1})));
   // The three share the grid of RAS identity.
-  write("m/rib_10.nrrd",
-        mask({0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0},
-             "space: LPS\nspace directions: (-1,0,0) (0,-1,0) (0,0,1)\nspace origin: (0,0,0)\n"));
+  write("m/rib_10.nrrd", mask({0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0},
+                              "space: LPS\nspace directions: (-1,0,0) (0,-1,0) (0,0,1)\nspace origin: (0,0,0)\n"));
   const LabelVolume v = read_label_volume(at("m"));
   EXPECT_EQ(v.kind, "masks");
   ASSERT_EQ(v.labels.size(), 4u);
@@ -175,19 +172,15 @@ TEST_F(Masks, OnDifferentGridsNameTheFile) {
     Bytes bytes;
   } others[] = {
       {"size", nrrd("uchar", lps_grid, Bytes(12, '\1'), "2 3 2")},
-      {"voxel size",
-       mask(twelve, "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1.01)\nspace origin: (0,0,0)\n")},
-      {"origin",
-       mask(twelve, "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0.5)\n")},
-      {"direction",
-       mask(twelve, "space: LPS\nspace directions: (0,1,0) (1,0,0) (0,0,1)\nspace origin: (0,0,0)\n")}};
+      {"voxel size", mask(twelve, "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1.01)\nspace origin: (0,0,0)\n")},
+      {"origin", mask(twelve, "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0.5)\n")},
+      {"direction", mask(twelve, "space: LPS\nspace directions: (0,1,0) (1,0,0) (0,0,1)\nspace origin: (0,0,0)\n")}};
   for (const auto& other : others) {
     write("m/b.nrrd", other.bytes);
     expect_error([&] { read_label_volume(at("m")); }, {std::string("differs: ") + other.what, "b.nrrd"});
   }
   write("m/b.nrrd",
-        mask(twelve,
-             "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1.00001)\nspace origin: (0,0,0.00001)\n"));
+        mask(twelve, "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1.00001)\nspace origin: (0,0,0.00001)\n"));
   EXPECT_NO_THROW(read_label_volume(at("m")));
 }
 

@@ -56,8 +56,7 @@ TEST_F(VolumeFile, NiftiQuaternionAndGzipAndBigEndianAreRead) {
   n.pixdim = {-1, 2, 3, 4};  // qfac -1: the third axis is mirrored
   const float s = std::sin(15 * M_PI / 180);
   n.quatern = {0, 0, s, 5, 6, 7};  // 30 degrees about z
-  const LabelVolume v =
-      read_label_volume(write("q.nii.gz", gzip(n.header() + pack<std::uint16_t>(twelve, true))));
+  const LabelVolume v = read_label_volume(write("q.nii.gz", gzip(n.header() + pack<std::uint16_t>(twelve, true))));
   expect_twelve(v);
   expect_orthonormal(v);
   const double c = std::cos(M_PI / 6), t = std::sin(M_PI / 6);
@@ -100,9 +99,8 @@ TEST_F(VolumeFile, NiftiThatContradictsItselfWarns) {
   EXPECT_TRUE(has_warning(v.warnings, "40 mm apart"));
   n = {};
   n.sform = 0;
-  EXPECT_TRUE(
-      has_warning(read_label_volume(write("none.nii", n.header() + pack<std::uint8_t>(twelve))).warnings,
-                  "no orientation"));
+  EXPECT_TRUE(has_warning(read_label_volume(write("none.nii", n.header() + pack<std::uint8_t>(twelve))).warnings,
+                          "no orientation"));
 }
 
 TEST_F(VolumeFile, NiftiIsNotMixedUpWithItsSibling) {
@@ -145,21 +143,19 @@ TEST_F(VolumeFile, LargeLabelNumbersSurvive) {
   std::vector<double> values(12, 0);
   values[3] = 2147483647;
   values[4] = 70000;
-  const LabelVolume v =
-      read_label_volume(write("l.nrrd", nrrd("int64", lps_grid, pack<std::int64_t>(values))));
+  const LabelVolume v = read_label_volume(write("l.nrrd", nrrd("int64", lps_grid, pack<std::int64_t>(values))));
   ASSERT_EQ(v.labels.size(), 3u);
   EXPECT_EQ(v.labels[1].number, 70000);
   EXPECT_EQ(number(v, 0, 1, 0), 2147483647);
   values[3] = 2147483648.0;
-  expect_unreadable(write("m.nrrd", nrrd("int64", lps_grid, pack<std::int64_t>(values))),
-                    {"2147483648", "too large"});
+  expect_unreadable(write("m.nrrd", nrrd("int64", lps_grid, pack<std::int64_t>(values))), {"2147483648", "too large"});
 }
 
 TEST_F(VolumeFile, NrrdBigEndianGzipDetachedAndRas) {
-  expect_twelve(read_label_volume(write(
-      "b.nrrd", nrrd("unsigned short", lps_grid, pack<std::uint16_t>(twelve, true), "3 2 2", "raw", "big"))));
   expect_twelve(read_label_volume(
-      write("g.nrrd", nrrd("short", lps_grid, gzip(pack<std::int16_t>(twelve)), "3 2 2", "gzip"))));
+      write("b.nrrd", nrrd("unsigned short", lps_grid, pack<std::uint16_t>(twelve, true), "3 2 2", "raw", "big"))));
+  expect_twelve(
+      read_label_volume(write("g.nrrd", nrrd("short", lps_grid, gzip(pack<std::int16_t>(twelve)), "3 2 2", "gzip"))));
   write("d.raw", pack<std::uint8_t>(twelve));
   expect_twelve(read_label_volume(write("d.nhdr", nrrd("uchar", lps_grid + "data file: d.raw\n", ""))));
   const std::string ras =
@@ -184,18 +180,17 @@ TEST_F(VolumeFile, SegmentNamesOfSlicerAreTaken) {
 
 TEST_F(VolumeFile, MetaImageIsRead) {
   const std::string grid = "TransformMatrix = 0 1 0 1 0 0 0 0 1\nOffset = 4 5 6\nElementSpacing = 2 3 4\n";
-  const LabelVolume v =
-      read_label_volume(write("a.mha", metaimage("MET_SHORT", "BinaryDataByteOrderMSB = True\n" + grid,
-                                                 pack<std::int16_t>(twelve, true))));
+  const LabelVolume v = read_label_volume(write(
+      "a.mha", metaimage("MET_SHORT", "BinaryDataByteOrderMSB = True\n" + grid, pack<std::int16_t>(twelve, true))));
   expect_twelve(v);
   EXPECT_EQ(v.kind, "metaimage");
   expect_point(v.world(1, 0, 0), 4, 7, 6);
   expect_point(v.world(0, 1, 1), 7, 5, 10);
   const Bytes packed = zlib(pack<std::uint8_t>(twelve));
-  expect_twelve(read_label_volume(write("z.mha", metaimage("MET_UCHAR",
-                                                           "CompressedData = True\nCompressedDataSize = " +
-                                                               std::to_string(packed.size()) + "\n",
-                                                           packed))));
+  expect_twelve(read_label_volume(
+      write("z.mha",
+            metaimage("MET_UCHAR",
+                      "CompressedData = True\nCompressedDataSize = " + std::to_string(packed.size()) + "\n", packed))));
   write("h.raw", pack<float>(twelve));
   Bytes h = metaimage("MET_FLOAT", "ElementSpacing = 1 1 2\n", "");
   h.replace(h.find("LOCAL"), 5, "h.raw");
@@ -260,8 +255,7 @@ TEST_F(VolumeFile, EveryTruncationIsAnError) {
       {"z.nrrd", nrrd("uchar", lps_grid, gzip(pack<std::uint8_t>(twelve)), "3 2 2", "gzip")},
       {"t.mha", metaimage("MET_UCHAR", "", pack<std::uint8_t>(twelve))},
       {"z.mha",
-       metaimage("MET_USHORT",
-                 "CompressedData = True\nCompressedDataSize = " + std::to_string(packed.size()) + "\n",
+       metaimage("MET_USHORT", "CompressedData = True\nCompressedDataSize = " + std::to_string(packed.size()) + "\n",
                  packed)},
       {"t.gipl", gipl()},
       {"t.gipl.gz", gzip(gipl())},
@@ -270,8 +264,7 @@ TEST_F(VolumeFile, EveryTruncationIsAnError) {
   for (const auto& f : files) {
     ASSERT_NO_THROW(read_label_volume(write(f.name, f.bytes))) << f.name;
     for (std::size_t length = 0; length < f.bytes.size(); ++length) {
-      SCOPED_TRACE(std::string(f.name) + " cut to " + std::to_string(length) + " of " +
-                   std::to_string(f.bytes.size()));
+      SCOPED_TRACE(std::string(f.name) + " cut to " + std::to_string(length) + " of " + std::to_string(f.bytes.size()));
       expect_unreadable(write(f.name, f.bytes.substr(0, length)), {});
       if (HasFailure()) return;
     }
@@ -300,12 +293,11 @@ TEST_F(VolumeFile, BadSpacingIsAnErrorInEveryFormat) {
     expect_unreadable(write("s.nii", n.header() + pack<std::uint8_t>(twelve)), {"voxel size", "axis 2"});
     expect_unreadable(write("s.gipl", gipl(1, s, 1)), {"voxel size", "axis 2"});
     const std::string text = std::isnan(s) ? "nan" : std::isinf(s) ? "inf" : s == 0 ? "0" : "-2";
-    expect_unreadable(write("s.mha", metaimage("MET_UCHAR", "ElementSpacing = 1 " + text + " 1\n",
-                                               pack<std::uint8_t>(twelve))),
-                      {"voxel size", "axis 2"});
     expect_unreadable(
-        write("s.nrrd", nrrd("uchar", "spacings: 1 " + text + " 1\n", pack<std::uint8_t>(twelve))),
+        write("s.mha", metaimage("MET_UCHAR", "ElementSpacing = 1 " + text + " 1\n", pack<std::uint8_t>(twelve))),
         {"voxel size", "axis 2"});
+    expect_unreadable(write("s.nrrd", nrrd("uchar", "spacings: 1 " + text + " 1\n", pack<std::uint8_t>(twelve))),
+                      {"voxel size", "axis 2"});
   }
   expect_unreadable(write("z.nrrd", nrrd("uchar", "space: LPS\nspace directions: (1,0,0) (0,0,0) (0,0,1)\n",
                                          pack<std::uint8_t>(twelve))),
@@ -324,9 +316,9 @@ TEST_F(VolumeFile, ShearBeyondToleranceIsAnError) {
   };
   expect_unreadable(write("s.nrrd", sheared("0.0003")), {"sheared"});
   expect_orthonormal(read_label_volume(write("t.nrrd", sheared("0.00005"))));
-  expect_unreadable(write("s.mha", metaimage("MET_UCHAR", "TransformMatrix = 1 0 0 0.1 1 0 0 0 1\n",
-                                             pack<std::uint8_t>(twelve))),
-                    {"sheared"});
+  expect_unreadable(
+      write("s.mha", metaimage("MET_UCHAR", "TransformMatrix = 1 0 0 0.1 1 0 0 0 1\n", pack<std::uint8_t>(twelve))),
+      {"sheared"});
 }
 
 TEST_F(VolumeFile, WrongByteOrderInHeaderIsAnError) {
@@ -343,8 +335,7 @@ TEST_F(VolumeFile, AbsurdSizesAreRefusedWithoutTakingMemory) {
   n.dim = {3, 32767, 32767, 32767, 1, 1, 1, 1};
   expect_unreadable(write("h.nii", n.header() + pack<std::uint8_t>(twelve)), {"truncated"});
   expect_unreadable(write("h.nii.gz", gzip(n.header() + pack<std::uint8_t>(twelve))), {"truncated"});
-  expect_unreadable(write("h.nrrd", nrrd("uchar", lps_grid, gzip("abc"), "99999 99999 9999", "gzip")),
-                    {"truncated"});
+  expect_unreadable(write("h.nrrd", nrrd("uchar", lps_grid, gzip("abc"), "99999 99999 9999", "gzip")), {"truncated"});
 }
 
 TEST_F(VolumeFile, IntensityImagesAreRefused) {
@@ -373,8 +364,7 @@ TEST_F(VolumeFile, AThousandLabelsAreReadAndOneMoreIsAnIntensityImage) {
     EXPECT_EQ(number(v, 0, 0, 0), 1000);
     EXPECT_EQ(number(v, 999, 0, 0), 1);
     values.back() = 1001;
-    expect_unreadable(write("k.nrrd", nrrd(type, lps_grid, data(), "1001 1 1")),
-                      {"intensity image", "1000 distinct"});
+    expect_unreadable(write("k.nrrd", nrrd(type, lps_grid, data(), "1001 1 1")), {"intensity image", "1000 distinct"});
   }
 }
 

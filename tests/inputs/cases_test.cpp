@@ -1,4 +1,5 @@
-// Files that were once read wrongly, refused, or that ended the program: each is a file of tests/inputs/cases with the right answer.
+// Files that were once read wrongly, refused, or that ended the program: each is a file of tests/inputs/cases with the
+// right answer.
 #include <sys/resource.h>
 
 #include <chrono>
@@ -11,11 +12,11 @@
 namespace {
 
 using namespace inputs;
-using program::Around;
 using image_files::gzip;
 using image_files::Nifti;
 using image_files::pack;
 using image_files::twelve;
+using program::Around;
 
 class Cases : public InputTest {
  protected:
@@ -47,7 +48,8 @@ class Cases : public InputTest {
 const std::map<int, int> kTurned = {{1, 360}};  // the voxels of a box on a grid that is turned about z
 
 TEST_F(Cases, GzipIsToldFromTheBytesAndEndingsMayBeOfAnyCase) {
-  for (const char* name : {"Mixed.Nii.Gz", "really_gz.nii", "nokinds4.nrrd"}) EXPECT_EQ(voxels(file(name)), kTurned) << name;
+  for (const char* name : {"Mixed.Nii.Gz", "really_gz.nii", "nokinds4.nrrd"})
+    EXPECT_EQ(voxels(file(name)), kTurned) << name;
 }
 
 TEST_F(Cases, ASlopeOfZeroMeansNone) {
@@ -63,7 +65,9 @@ TEST_F(Cases, LeftAnteriorSuperiorTurnsTheSecondAxisOnly) {
   const Json found = info(file("space_LAS.nrrd")), lps = info(file("nokinds4.nrrd"));
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(found.at("origin_mm")[i].get<double>(), (i == 1 ? -1 : 1) * lps.at("origin_mm")[i].get<double>(), 1e-9);
-    for (int d = 0; d < 3; ++d) EXPECT_NEAR(found.at("direction")[d][i].get<double>(), (i == 1 ? -1 : 1) * lps.at("direction")[d][i].get<double>(), 1e-9);
+    for (int d = 0; d < 3; ++d)
+      EXPECT_NEAR(found.at("direction")[d][i].get<double>(),
+                  (i == 1 ? -1 : 1) * lps.at("direction")[d][i].get<double>(), 1e-9);
   }
 }
 
@@ -75,10 +79,13 @@ TEST_F(Cases, NamesOfSegmentsSurviveAHoleInTheirNumbers) {
 }
 
 TEST_F(Cases, TiffNumbersAreLabelsWhateverTheirColour) {
-  for (const char* name : {"white_is_zero.tif", "black_is_zero.tif"}) EXPECT_EQ(voxels(file(name)), (std::map<int, int>{{255, 1176}})) << name;
+  for (const char* name : {"white_is_zero.tif", "black_is_zero.tif"})
+    EXPECT_EQ(voxels(file(name)), (std::map<int, int>{{255, 1176}})) << name;
   EXPECT_EQ(voxels(file("bool.tif")), (std::map<int, int>{{1, 1176}}));
-  for (const char* name : {"palette_grey_stretched.tif", "u32.tif"}) EXPECT_EQ(voxels(file(name)), (std::map<int, int>{{1, 72}, {3, 1104}})) << name;
-  const double white = volume(mesh(file("white_is_zero.tif"), {"--spacing", "1,1,2"}), 255), black = volume(mesh(file("black_is_zero.tif"), {"--spacing", "1,1,2"}), 255);
+  for (const char* name : {"palette_grey_stretched.tif", "u32.tif"})
+    EXPECT_EQ(voxels(file(name)), (std::map<int, int>{{1, 72}, {3, 1104}})) << name;
+  const double white = volume(mesh(file("white_is_zero.tif"), {"--spacing", "1,1,2"}), 255),
+               black = volume(mesh(file("black_is_zero.tif"), {"--spacing", "1,1,2"}), 255);
   EXPECT_EQ(white, black);
   EXPECT_NEAR(white, 2352, 250);
 }
@@ -107,7 +114,8 @@ TEST_F(Cases, ManyLabelsThatAreParcelsAreRead) {
 TEST_F(Cases, ContourDataAbove64kStoredAsUnIsRead) {
   written_by("write_rtstruct.py", {"long"});
   if (IsSkipped() || HasFatalFailure()) return;
-  ASSERT_NE(program::read_file(in("long.dcm")).find(std::string("\x06\x30\x50\0UN", 6)), std::string::npos) << "pydicom stores it otherwise";
+  ASSERT_NE(program::read_file(in("long.dcm")).find(std::string("\x06\x30\x50\0UN", 6)), std::string::npos)
+      << "pydicom stores it otherwise";
   const Json found = info(in("long.dcm"));
   EXPECT_EQ(found.at("sections"), 4);
   EXPECT_EQ(found.at("labels")[0].at("name"), "Body");
@@ -137,12 +145,17 @@ TEST_F(Cases, WhatAFileClaimsCostsNothing) {
 TEST_F(Cases, RangesOfElementsNearTheLargestIntegerAreRefused) {
   fails(3, {"validate", file("elset_int64max.inp")}, {"too large", "byte"});
   const std::string deck = program::read_file(file("elset_int64max.inp"));
-  for (const char* range : {"9223372036854775806,9223372036854775807,1", "-9223372036854775807,9223372036854775807,1", "1,9223372036854775807,9223372036854775807"})
-    fails(3, {"validate", write("a.inp", deck.substr(0, deck.find("*ELSET")) + "*ELSET, ELSET=A, GENERATE\n" + range + "\n")}, {"too large"});
+  for (const char* range : {"9223372036854775806,9223372036854775807,1", "-9223372036854775807,9223372036854775807,1",
+                            "1,9223372036854775807,9223372036854775807"})
+    fails(3,
+          {"validate",
+           write("a.inp", deck.substr(0, deck.find("*ELSET")) + "*ELSET, ELSET=A, GENERATE\n" + range + "\n")},
+          {"too large"});
 }
 
 TEST_F(Cases, NumbersThatNoDoubleHoldsAreNamed) {
-  fails(3, {"fem", program::testdata("border.nii.gz"), "--materials", file("law_1e999.json"), "-o", out("a.inp")}, {"1e999", "line 1"});
+  fails(3, {"fem", program::testdata("border.nii.gz"), "--materials", file("law_1e999.json"), "-o", out("a.inp")},
+        {"1e999", "line 1"});
   fails(3, {"validate", file("tet.vtk"), "--limits", write("l.json", "{\"dice_warn\": -1e4000}")}, {"-1e4000"});
 }
 
@@ -161,9 +174,13 @@ TEST_F(Cases, DeepNestingIsRefused) {
     return all;
   };
   const std::string open("\xff\xff\xff\xff", 4), item = std::string("\xfe\xff\0\xe0", 4) + open;
-  refuses_at_once(write("a.dcm", dicom("1.2.840.10008.1.2.1", std::string("\x08\0\x40\x11SQ\0\0", 8) + open + item)), {"nested more than"});
-  refuses_at_once(write("b.dcm", dicom("1.2.840.10008.1.2", std::string("\x08\0\x40\x11", 4) + open + item)), {"nested more than"});
-  refuses_at_once(write("c.dcm", dicom("1.2.840.10008.1.2.1", std::string("\x08\0\x40\x11", 4) + open + item, std::string("\x08\0\x40\x11UN\0\0", 8) + open + item)), {"nested more than"});
+  refuses_at_once(write("a.dcm", dicom("1.2.840.10008.1.2.1", std::string("\x08\0\x40\x11SQ\0\0", 8) + open + item)),
+                  {"nested more than"});
+  refuses_at_once(write("b.dcm", dicom("1.2.840.10008.1.2", std::string("\x08\0\x40\x11", 4) + open + item)),
+                  {"nested more than"});
+  refuses_at_once(write("c.dcm", dicom("1.2.840.10008.1.2.1", std::string("\x08\0\x40\x11", 4) + open + item,
+                                       std::string("\x08\0\x40\x11UN\0\0", 8) + open + item)),
+                  {"nested more than"});
 }
 
 TEST_F(Cases, WhatFollowsTheVoxelsIsNotInflated) {
@@ -209,12 +226,14 @@ TEST_F(Cases, ASlabOfOneSliceIsStackedAlongAnotherAxis) {
   std::vector<int> values(30, 0);
   for (int y = 1; y < 4; ++y)
     for (int x = 1; x < 5; ++x) values[6 * y + x] = 1;
-  const Json r = mesh(write("slab.nii", n.header() + pack<std::uint8_t>(values)), {"--simplify", "0", "--interpolate", "0"});
+  const Json r =
+      mesh(write("slab.nii", n.header() + pack<std::uint8_t>(values)), {"--simplify", "0", "--interpolate", "0"});
   EXPECT_EQ(r.at("input").at("axis"), "y");
   EXPECT_NEAR(volume(r, 1), 60, 6);
 }
 
-/// Minutes, and hundreds of thousands of virtual slices or needles, for a few voxels or lines, as long as they were enhanced.
+/// Minutes, and hundreds of thousands of virtual slices or needles, for a few voxels or lines, as long as they were
+/// enhanced.
 TEST_F(Cases, AbsurdHeightsAndSpacingsAreToldAndKeptAsStitched) {
   const auto kept = [&](const std::string& path, const std::string& told) {
     const Ended r = succeeds({"mesh", path, "-o", out("a.vtu"), "--report", out("R.json")});

@@ -1,4 +1,5 @@
-// Faults of libraries that are worked round (docs/dependencies.md): each test fails when the fault is gone, and the workaround may go.
+// Faults of libraries that are worked round (docs/dependencies.md): each test fails when the fault is gone, and the
+// workaround may go.
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/oflog/oflog.h>
@@ -37,8 +38,10 @@ TEST_F(Dependencies, DcmtkReadsSequencesByRecursion) {
   using image_files::little;
   const std::string uid("1.2.840.10008.1.2.1\0", 20);
   std::string meta = std::string("\2\0\x10\0UI", 6) + little<std::uint16_t>(20) + uid;
-  std::string all = std::string(128, '\0') + "DICM" + std::string("\2\0\0\0UL\4\0", 8) + little<std::uint32_t>(meta.size()) + meta;
-  for (int i = 0; i < 50000; ++i) all += std::string("\x08\0\x40\x11SQ\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\xff\xff\xff\xff", 20);
+  std::string all =
+      std::string(128, '\0') + "DICM" + std::string("\2\0\0\0UL\4\0", 8) + little<std::uint32_t>(meta.size()) + meta;
+  for (int i = 0; i < 50000; ++i)
+    all += std::string("\x08\0\x40\x11SQ\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\xff\xff\xff\xff", 20);
   const std::string file = write("nest.dcm", all);
   EXPECT_EQ(ended_by([&] {
               OFLog::configure(OFLogger::OFF_LOG_LEVEL);

@@ -27,7 +27,8 @@ class InputTest : public program::ProgramTest {
 
   /// The report of `stackmesh mesh INPUT --no-enhance MORE... -o out/a.vtu -o out/a.obj`, which must be verified.
   Json mesh(const std::string& input, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"mesh", input, "--no-enhance", "-o", out("a.vtu"), "-o", out("a.obj"), "--report", out("R.json")};
+    std::vector<std::string> arguments = {"mesh", input,        "--no-enhance", "-o",         out("a.vtu"),
+                                          "-o",   out("a.obj"), "--report",     out("R.json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     last_ = succeeds(arguments);
     const Json r = report();
@@ -66,12 +67,15 @@ class InputTest : public program::ProgramTest {
   void expect_corners(const std::string& name) {
     SCOPED_TRACE(name);
     const Json wanted = expected(name);
-    mesh(wanted.at("path"), {"--simplify", "0", "--band", "0", "--interpolate", "0", "--caps", "flat", "--label", wanted.at("labels")[0].at("label").dump()});
+    mesh(wanted.at("path"), {"--simplify", "0", "--band", "0", "--interpolate", "0", "--caps", "flat", "--label",
+                             wanted.at("labels")[0].at("label").dump()});
     const std::vector<std::array<double, 3>> found = vertices();
     ASSERT_EQ(wanted.at("corners").size(), 8u);
     for (const Json& c : wanted.at("corners")) {
       double nearest = 1e300;
-      for (const auto& p : found) nearest = std::min(nearest, std::hypot(p[0] - c[0].get<double>(), p[1] - c[1].get<double>(), p[2] - c[2].get<double>()));
+      for (const auto& p : found)
+        nearest = std::min(nearest,
+                           std::hypot(p[0] - c[0].get<double>(), p[1] - c[1].get<double>(), p[2] - c[2].get<double>()));
       EXPECT_LT(nearest, 1e-6) << c.dump();
     }
   }

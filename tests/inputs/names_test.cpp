@@ -20,7 +20,8 @@ class Names : public InputTest {
 TEST_F(Names, TravelFromAStructureSetToEveryOutput) {
   written_by("write_rtstruct.py", {"box", "latin"});
   if (IsSkipped() || HasFatalFailure()) return;
-  const Json r = mesh(in("box.dcm"), {"-o", out("a.vtp"), "-o", out("a.msh"), "-o", out("a.inp"), "--names", out("names.json")});
+  const Json r =
+      mesh(in("box.dcm"), {"-o", out("a.vtp"), "-o", out("a.msh"), "-o", out("a.inp"), "--names", out("names.json")});
   const Json colour = {10, 200, 30};
   EXPECT_EQ(row(r, 1).at("name"), "Lt Lung");
   EXPECT_EQ(row(r, 1).at("colour"), colour);
@@ -35,14 +36,17 @@ TEST_F(Names, TravelFromAStructureSetToEveryOutput) {
 }
 
 TEST_F(Names, ComeFromALabelTableForPlainVolumes) {
-  const std::string table = write("labels.ctbl", "# Color table file\n0 Background 0 0 0 0\n1 Outer_wall 200 100 50 255\n2 Inner 1 2 3 255\n");
+  const std::string table = write(
+      "labels.ctbl", "# Color table file\n0 Background 0 0 0 0\n1 Outer_wall 200 100 50 255\n2 Inner 1 2 3 255\n");
   const std::string file = program::testdata("femur.nii.gz");
-  const Json r = mesh(file, {"--names", table, "--names", out("names.json"), "--label", "Inner", "--interpolate", "0", "--simplify", "1"});
+  const Json r = mesh(file, {"--names", table, "--names", out("names.json"), "--label", "Inner", "--interpolate", "0",
+                             "--simplify", "1"});
   ASSERT_EQ(r.at("labels").size(), 1u);
   EXPECT_EQ(row(r, 2).at("name"), "Inner");
   EXPECT_EQ(row(r, 2).at("colour"), (Json{1, 2, 3}));
   EXPECT_TRUE(std::filesystem::exists(out("names.json")));
-  fails(2, {"mesh", file, "--names", table, "--names", "other.txt", "-o", out("b.vtu")}, {"two label tables"}, written());
+  fails(2, {"mesh", file, "--names", table, "--names", "other.txt", "-o", out("b.vtu")}, {"two label tables"},
+        written());
 }
 
 }  // namespace

@@ -27,9 +27,7 @@ class Robustness : public InputTest {
       if (kind == 0) changed.resize(below(changed.size()));
       if (kind == 1) changed.insert(below(changed.size()), changed.substr(below(changed.size()), below(64)));
       if (kind == 2) changed.erase(below(changed.size()), below(64));
-      {
-        std::ofstream(path, std::ios::binary) << changed;
-      }
+      { std::ofstream(path, std::ios::binary) << changed; }
       stackmesh::InputOptions options;
       options.paths = {read_path.empty() ? path : read_path};
       testing::internal::CaptureStderr();
@@ -83,7 +81,8 @@ TEST_F(Robustness, NoIdentifyingFieldReachesAnOutputOrMessage) {
   };
   int n = 0;
   for (const char* name : {"box.dcm", "overlap.dcm", "seg_overlap.dcm", "series"}) {
-    std::vector<std::string> arguments = {"mesh", in(name), "--no-enhance", "--verbose", "--report", out(std::to_string(n) + ".json")};
+    std::vector<std::string> arguments = {"mesh",      in(name),   "--no-enhance",
+                                          "--verbose", "--report", out(std::to_string(n) + ".json")};
     for (const char* end : {"vtu", "msh", "inp", "vtk", "mesh", "stl", "ply", "obj", "off", "vtp"}) {
       arguments.push_back("-o");
       arguments.push_back(out(std::to_string(n) + "." + end));
@@ -91,14 +90,17 @@ TEST_F(Robustness, NoIdentifyingFieldReachesAnOutputOrMessage) {
     EXPECT_EQ(run(arguments), 0) << told;
     EXPECT_EQ(run({"info", in(name)}), 0);
     EXPECT_EQ(run({"info", in(name), "--json"}), 0);
-    for (const char* end : {"c.json", "c.svg", "c.cnt"}) EXPECT_EQ(run({"contours", in(name), "-o", out(std::to_string(n) + end)}), 0);
+    for (const char* end : {"c.json", "c.svg", "c.cnt"})
+      EXPECT_EQ(run({"contours", in(name), "-o", out(std::to_string(n) + end)}), 0);
     ++n;
   }
-  for (const char* name : {"crossing.dcm", "none.dcm", "seg_mixed.dcm", "series_ct", "series_two"}) EXPECT_EQ(run({"mesh", in(name), "-o", out("no.vtu")}), 3);
+  for (const char* name : {"crossing.dcm", "none.dcm", "seg_mixed.dcm", "series_ct", "series_two"})
+    EXPECT_EQ(run({"mesh", in(name), "-o", out("no.vtu")}), 3);
   write("cut.dcm", head.substr(0, head.size() / 2));
   EXPECT_EQ(run({"info", in("cut.dcm")}), 3);
   const auto is_clean = [](const std::string& text) {
-    return text.find("PLANTED") == std::string::npos && text.find("19010203") == std::string::npos && text.find("DOCTOR") == std::string::npos;
+    return text.find("PLANTED") == std::string::npos && text.find("19010203") == std::string::npos &&
+           text.find("DOCTOR") == std::string::npos;
   };
   EXPECT_TRUE(is_clean(told)) << told;
   EXPECT_GE(written().size(), 40u);

@@ -7,8 +7,8 @@ using namespace inputs;
 
 class Segmentation : public InputTest {};
 
-#define WRITTEN(...)                                        \
-  written_by("write_segmentations.py", {__VA_ARGS__});      \
+#define WRITTEN(...)                                   \
+  written_by("write_segmentations.py", {__VA_ARGS__}); \
   if (IsSkipped() || HasFatalFailure()) return
 
 TEST_F(Segmentation, DicomSegmentsKeepNumberNameColourAndPlace) {
@@ -24,7 +24,8 @@ TEST_F(Segmentation, DicomOverlapGoesToTheSmallerOrTheOneNamedFirst) {
   WRITTEN("seg_overlap");
   const std::string file = in("seg_overlap.dcm");
   const Json found = expect_labels("seg_overlap");
-  EXPECT_NE(found.at("warnings").dump().find("'liver' and 'spine' overlap in 8 voxels"), std::string::npos) << found.at("warnings");
+  EXPECT_NE(found.at("warnings").dump().find("'liver' and 'spine' overlap in 8 voxels"), std::string::npos)
+      << found.at("warnings");
   const double voxel = 0.8 * 0.7 * 2.0;
   Json r = mesh(file, {"--label", "spine,liver"});
   EXPECT_NEAR(row(r, 2).at("input_volume_mm3").get<double>(), 100 * voxel, 1e-9);

@@ -27,7 +27,8 @@ TEST_F(Series, OfWholeNumbersIsALabelVolume) {
 TEST_F(Series, MissingDuplicatedAndUnevenSlicesAreNamed) {
   WRITTEN("series_missing", "series_twice", "series_uneven", "series_sheared");
   // The fourth slice comes from a neighbour: the object has the same outline there.
-  EXPECT_NE(expect_labels("series_missing").at("warnings").dump().find("missing slices at heights 39 mm"), std::string::npos);
+  EXPECT_NE(expect_labels("series_missing").at("warnings").dump().find("missing slices at heights 39 mm"),
+            std::string::npos);
   const std::string twice = info(in("series_twice")).at("warnings").dump();
   EXPECT_NE(twice.find("duplicated slices"), std::string::npos) << twice;
   EXPECT_NE(info(in("series_uneven")).at("warnings").dump().find("uneven"), std::string::npos);
@@ -86,9 +87,12 @@ TEST_F(Series, AnImageIsItsNiftiTwin) {
   EXPECT_LT(differs, 1e-6 * 3000);
 
   // Moduli of the elements, bit by bit.
-  const std::string law_file = program::testdata("femur_ct_law.json"), labels = program::shared_data("torso_totalseg/abdomen_2mm_slab_31labels.nii.gz");
-  for (const auto& [image, name] : std::vector<std::pair<std::string, std::string>>{{folder, "dicom.vtu"}, {out("twin.nii.gz"), "nifti.vtu"}})
-    succeeds({"fem", labels, "--label", "33", "--no-enhance", "--interpolate", "0", "--order", "1", "--materials", law_file, "--image", image, "-o", out(name)});
+  const std::string law_file = program::testdata("femur_ct_law.json"),
+                    labels = program::shared_data("torso_totalseg/abdomen_2mm_slab_31labels.nii.gz");
+  for (const auto& [image, name] :
+       std::vector<std::pair<std::string, std::string>>{{folder, "dicom.vtu"}, {out("twin.nii.gz"), "nifti.vtu"}})
+    succeeds({"fem", labels, "--label", "33", "--no-enhance", "--interpolate", "0", "--order", "1", "--materials",
+              law_file, "--image", image, "-o", out(name)});
   EXPECT_NE(program::read_file(out("dicom.vtu")).find("modulus_MPa"), std::string::npos);
   EXPECT_EQ(program::read_file(out("dicom.vtu")), program::read_file(out("nifti.vtu")));
 }

@@ -15,12 +15,34 @@ TEST_F(SlicerModule, DescribesItselfByTheRulesOfTheExecutionModel) {
   EXPECT_EQ(xml.err, "");
   const Ended r = program::python("slicer_xml.py", {write("module.xml", xml.out)});
   EXPECT_EQ(r.code, 0) << r.out << r.err;
-  for (const char* flag : {"--label", "--edge-length", "--merge", "<index>1</index>"}) EXPECT_NE(xml.out.find(flag), std::string::npos) << flag;
+  for (const char* flag : {"--label", "--edge-length", "--merge", "<index>1</index>"})
+    EXPECT_NE(xml.out.find(flag), std::string::npos) << flag;
 }
 
 TEST_F(SlicerModule, RunsAsSlicerCallsItAndTellsItsProgress) {
-  const Ended r = succeeds({"--label", "1", "--merge", "--caps", "auto", "--axis", "auto", "--deviation", "0", "--gradation", "1.3", "--smooth", "5", "--interpolate", "0",
-                            "--noEnhance", "--threads", "1", "--processinformationaddress", "0", "--returnparameterfile", out("back.params"), heart_,
+  const Ended r = succeeds({"--label",
+                            "1",
+                            "--merge",
+                            "--caps",
+                            "auto",
+                            "--axis",
+                            "auto",
+                            "--deviation",
+                            "0",
+                            "--gradation",
+                            "1.3",
+                            "--smooth",
+                            "5",
+                            "--interpolate",
+                            "0",
+                            "--noEnhance",
+                            "--threads",
+                            "1",
+                            "--processinformationaddress",
+                            "0",
+                            "--returnparameterfile",
+                            out("back.params"),
+                            heart_,
                             out("heart.vtu")});
   EXPECT_EQ(written(), (std::vector<std::string>{"back.params", "heart.vtu"}));
   EXPECT_NE(program::read_file(out("back.params")).find("closure = verified"), std::string::npos);
@@ -42,7 +64,8 @@ TEST_F(SlicerModule, RunsAsSlicerCallsItAndTellsItsProgress) {
       EXPECT_LE(done, 1);
       last = done;
     } else {
-      EXPECT_EQ(line.rfind("</filter-", 0) == 0 || line.rfind("<filter-", 0) == 0, true) << "stdout holds '" << line << "'";
+      EXPECT_EQ(line.rfind("</filter-", 0) == 0 || line.rfind("<filter-", 0) == 0, true)
+          << "stdout holds '" << line << "'";
     }
   }
   EXPECT_EQ(last, 1);

@@ -132,7 +132,8 @@ TEST_F(StructureSet, OpenContoursAreClosedAndNamed) {
 TEST_F(StructureSet, ContoursThatBoundNothingAreLeftOutAndNamed) {
   DRAWN(file, "odd");
   EXPECT_NEAR(volume(mesh(file), 1), 8000, 1e-6);
-  EXPECT_TRUE(last_.warns_of("'Box': contours that bound no area (fewer than three points, or on a line) left out: 11, 12, 13"));
+  EXPECT_TRUE(last_.warns_of(
+      "'Box': contours that bound no area (fewer than three points, or on a line) left out: 11, 12, 13"));
   EXPECT_TRUE(last_.warns_of("points and curves that are no outlines left out: 14, 15"));
 }
 
@@ -209,14 +210,15 @@ TEST_F(StructureSet, RealStructuresMeshAndAgreeWithTheirTextContours) {
   const std::string file = program::shared_data("thorax_rtstruct_dicompyler/rtss.dcm");
   if (file.empty()) GTEST_SKIP() << STACKMESH_SHARED_DATA "/thorax_rtstruct_dicompyler/rtss.dcm is not there";
   for (const auto& [label, name] : std::vector<std::pair<int, std::string>>{{5, "Heart"}, {7, "Nodes"}}) {
-    // Slices (RTSTRUCT) reach beyond their last contour, plane cuts (.cnt) do not: a round end holds a half of the gap for
-    // the ones and a third for the others. All else is the same.
+    // Slices (RTSTRUCT) reach beyond their last contour, plane cuts (.cnt) do not: a round end holds a half of the gap
+    // for the ones and a third for the others. All else is the same.
     const double dicom = volume(mesh(file, {"--label", name, "--caps", "round"}), label);
     const std::string text = program::shared_data("thorax_rtstruct_dicompyler/contours/" + name + ".cnt");
     const std::vector<stackmesh::ContourSection> sections = stackmesh::read_contour_file(text).sections;
     const std::size_t n = sections.size();
     const double ends = (area(sections[0]) * (sections[1].z_mm - sections[0].z_mm) +
-                         area(sections[n - 1]) * (sections[n - 1].z_mm - sections[n - 2].z_mm)) / 6;
+                         area(sections[n - 1]) * (sections[n - 1].z_mm - sections[n - 2].z_mm)) /
+                        6;
     EXPECT_NEAR(volume(mesh(text, {"--caps", "round"}), 1) + ends, dicom, 1e-3 * dicom) << name;
   }
   const Json together = mesh(file, {"--label", "Heart,Lt_Lung,BODY"});

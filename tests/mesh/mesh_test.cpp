@@ -1,8 +1,8 @@
 // Labels and contours in memory to a checked mesh in memory, without files.
 #include "mesh/mesh.h"
 
-#include <gtest/gtest.h>
 #include <dirent.h>
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -48,17 +48,21 @@ std::map<Label, double> tet_volumes(const TetMesh& m) {
   std::map<Label, double> mm3;
   for (std::size_t t = 0; t < m.tets.size(); ++t) {
     const auto& v = m.tets[t];
-    mm3[m.labels[t]] += dot(m.points[v[1]] - m.points[v[0]], cross(m.points[v[2]] - m.points[v[0]], m.points[v[3]] - m.points[v[0]])) / 6;
+    mm3[m.labels[t]] +=
+        dot(m.points[v[1]] - m.points[v[0]], cross(m.points[v[2]] - m.points[v[0]], m.points[v[3]] - m.points[v[0]])) /
+        6;
   }
   return mm3;
 }
 
 bool same(const InterfaceComplex& a, const InterfaceComplex& b) {
-  return a.points.size() == b.points.size() && a.triangles.size() == b.triangles.size() && std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0;
+  return a.points.size() == b.points.size() && a.triangles.size() == b.triangles.size() &&
+         std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0;
 }
 
 bool same(const LabelMesh& a, const LabelMesh& b) {
-  return same(a.surface, b.surface) && a.tets && b.tets && a.tets->tets == b.tets->tets && a.tets->points.size() == b.tets->points.size() &&
+  return same(a.surface, b.surface) && a.tets && b.tets && a.tets->tets == b.tets->tets &&
+         a.tets->points.size() == b.tets->points.size() &&
          std::memcmp(a.tets->points.data(), b.tets->points.data(), a.tets->points.size() * sizeof(Vec3)) == 0;
 }
 
@@ -95,7 +99,8 @@ TEST(MeshLabels, FillsEveryLabelWithItsVolumeWhereItLies) {
   EXPECT_EQ(m.contours.sections, 24u);
   const std::map<Label, double> mm3 = tet_volumes(*m.tets);
   ASSERT_EQ(mm3.size(), 3u);
-  for (const auto& [label, volume] : mm3) EXPECT_NEAR(volume, m.input_volume_mm3.at(label), 0.005 * m.input_volume_mm3.at(label)) << "label " << label;
+  for (const auto& [label, volume] : mm3)
+    EXPECT_NEAR(volume, m.input_volume_mm3.at(label), 0.005 * m.input_volume_mm3.at(label)) << "label " << label;
   Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
   for (const Vec3& p : m.tets->points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -211,7 +216,8 @@ TEST(MeshLabels, EndsSoonAfterItIsCancelledAndLeavesNoWorker) {
   std::vector<Label> labels;
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) labels.push_back(std::hypot(i - 27.5, j - 27.5, k - 27.5) < 26 ? 1 + (i / 16 + j / 16 + k / 16) % 2 : 0);
+      for (int i = 0; i < n; ++i)
+        labels.push_back(std::hypot(i - 27.5, j - 27.5, k - 27.5) < 26 ? 1 + (i / 16 + j / 16 + k / 16) % 2 : 0);
   const LabelVolume v = volume_of_labels(labels, {n, n, n}, {1, 1, 1});
   for (const char* stage : {"contours", "stitch", "enhance", "volume"}) {
     MeshOptions o;
@@ -249,7 +255,8 @@ TEST(MeshLabels, RefusesWhatIsNoVolumeInOneLine) {
   EXPECT_NE(refusal([](LabelVolume& v) { v.voxels[0] = 7; }).find("index 7"), std::string::npos);
   EXPECT_NE(refusal([](LabelVolume& v) { v.spacing_mm[1] = -1; }).find("spacing"), std::string::npos);
   EXPECT_NE(refusal([](LabelVolume& v) { v.axes[1] = v.axes[0]; }).find("orthonormal"), std::string::npos);
-  EXPECT_NE(refusal([](LabelVolume& v) { std::swap(v.labels[1], v.labels[2]); }).find("does not follow"), std::string::npos);
+  EXPECT_NE(refusal([](LabelVolume& v) { std::swap(v.labels[1], v.labels[2]); }).find("does not follow"),
+            std::string::npos);
   EXPECT_NE(refusal([](LabelVolume& v) { v.labels[0].number = 1; }).find("background"), std::string::npos);
   EXPECT_NE(refusal([](LabelVolume& v) { v.voxels.assign(v.voxels.size(), 0); }).find("no label"), std::string::npos);
   EXPECT_NE(refusal([](LabelVolume& v) { v.origin_mm.x = std::nan(""); }).find("origin"), std::string::npos);
@@ -279,7 +286,8 @@ TEST(MeshContours, TwoSectionsOfOneLabelAtAboutTheSameHeightAreOne) {
   both.label = 1;
   for (const double z : {0.0, 2.0, 4.0}) {
     both.sections.push_back({z, {{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}}}});
-    both.sections.push_back({z + 5e-4, {{{{20, 0}, {30, 0}, {30, 10}, {20, 10}}}}});  // the second piece, listed on its own
+    // the second piece, listed on its own
+    both.sections.push_back({z + 5e-4, {{{{20, 0}, {30, 0}, {30, 10}, {20, 10}}}}});
   }
   MeshOptions o;
   o.fill.worker_path = STACKMESH_WORKER;

@@ -34,9 +34,8 @@ std::vector<std::string> listing(const std::string& folder) {
 class AtomicFile : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "stackmesh_atomic_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-              std::to_string(::getpid());
+    folder_ = testing::TempDir() + "stackmesh_atomic_" + testing::UnitTest::GetInstance()->current_test_info()->name() +
+              "_" + std::to_string(::getpid());
     ASSERT_EQ(::mkdir(folder_.c_str(), 0777), 0) << std::strerror(errno);
   }
   void TearDown() override {
@@ -120,8 +119,7 @@ TEST_F(AtomicFile, ASymbolicLinkSurvives) {
 TEST_F(AtomicFile, AFolderOfThatNameIsRefused) {
   ASSERT_EQ(::mkdir(at("out.vtu").c_str(), 0777), 0);
   AtomicFiles files;
-  const std::string text =
-      output_error([&] { files.write(at("out.vtu"), [](std::FILE* f) { put(f, "x"); }); });
+  const std::string text = output_error([&] { files.write(at("out.vtu"), [](std::FILE* f) { put(f, "x"); }); });
   EXPECT_NE(text.find("out.vtu"), std::string::npos);
   EXPECT_NE(text.find("name a file, not a folder"), std::string::npos);
   ::rmdir(at("out.vtu").c_str());
@@ -137,8 +135,7 @@ TEST_F(AtomicFile, ADeviceIsRefusedAndLeftAlone) {
 
 TEST_F(AtomicFile, AMissingFolderIsAnOutputErrorWithTheNameAsGiven) {
   AtomicFiles files;
-  const std::string text =
-      output_error([&] { files.write(at("none/a.stl"), [](std::FILE* f) { put(f, "x"); }); });
+  const std::string text = output_error([&] { files.write(at("none/a.stl"), [](std::FILE* f) { put(f, "x"); }); });
   EXPECT_NE(text.find(at("none/a.stl") + ";"), std::string::npos) << text;
   EXPECT_NE(text.find("create the folder"), std::string::npos) << text;
 }
@@ -200,8 +197,7 @@ bool reports_no_room(const std::string& folder, const char* ending, const char* 
     }
   }
   files.commit();
-  return listing(folder) == std::vector<std::string>{"small.txt"} &&
-         read_file(folder + "/small.txt") == "small";
+  return listing(folder) == std::vector<std::string>{"small.txt"} && read_file(folder + "/small.txt") == "small";
 }
 
 TEST_F(AtomicFile, AFileSizeLimitIsNoticedAndNothingStays) {
@@ -220,8 +216,7 @@ TEST_F(AtomicFile, AFileSizeLimitIsNoticedAndNothingStays) {
 
 TEST_F(AtomicFile, AFullDiskIsNoticedAndNothingStays) {
   if (::mount("tmpfs", folder_.c_str(), "tmpfs", 0, "size=64k") != 0)
-    GTEST_SKIP() << "NOT TESTED: a full disk needs the right to mount a small tmpfs (" << std::strerror(errno)
-                 << ")";
+    GTEST_SKIP() << "NOT TESTED: a full disk needs the right to mount a small tmpfs (" << std::strerror(errno) << ")";
   for (const char* ending : {".vtu", ".msh", ".inp", ".vtk", ".mesh"}) {
     EXPECT_TRUE(reports_no_room(folder_, ending, "No space left on device")) << ending;
     std::remove(at("small.txt").c_str());
@@ -232,8 +227,7 @@ TEST_F(AtomicFile, AFullDiskIsNoticedAndNothingStays) {
     while (filler << std::string(4096, 'x') << std::flush) continue;
   }
   AtomicFiles files;
-  const std::string text =
-      output_error([&] { files.write(at("tiny.txt"), [](std::FILE* f) { put(f, "tiny"); }); });
+  const std::string text = output_error([&] { files.write(at("tiny.txt"), [](std::FILE* f) { put(f, "tiny"); }); });
   EXPECT_NE(text.find("free some space"), std::string::npos) << text;
   EXPECT_EQ(listing(folder_), std::vector<std::string>{"filler"});
   ::umount(folder_.c_str());

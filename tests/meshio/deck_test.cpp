@@ -31,9 +31,11 @@ int check_formats(const TetMesh& mesh, int order, const std::vector<std::string>
   json.precision(17);
   std::set<std::pair<Label, Label>> pairs;
   for (const InterfaceTriangle& t : mesh.faces) pairs.insert(std::minmax(t.below, t.above));
-  json << "{\"pairs\": " << pairs.size() << ", \"points\": " << mesh.points.size() - 1 << ", \"tets\": " << mesh.tets.size() << ", \"triangles\": " << mesh.faces.size()
-       << ", \"order\": " << order << ", \"volume\": " << volume << ", \"labels\": {";
-  for (const auto& [label, count] : labels) json << (label == labels.begin()->first ? "" : ", ") << '"' << label << "\": " << count;
+  json << "{\"pairs\": " << pairs.size() << ", \"points\": " << mesh.points.size() - 1
+       << ", \"tets\": " << mesh.tets.size() << ", \"triangles\": " << mesh.faces.size() << ", \"order\": " << order
+       << ", \"volume\": " << volume << ", \"labels\": {";
+  for (const auto& [label, count] : labels)
+    json << (label == labels.begin()->first ? "" : ", ") << '"' << label << "\": " << count;
   json << "}, \"files\": [";
   AtomicFiles files;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -51,7 +53,8 @@ int check_formats(const TetMesh& mesh, int order, const std::vector<std::string>
 
 TEST(Decks, FebioAndNastranHoldTheSampleForOtherReaders) {
   const int code = check_formats(sample_mesh(), 1, {"foo.feb"});
-  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+  if (code == 77 || code == 127)
+    GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
   EXPECT_EQ(code, 0);
 }
 
@@ -59,7 +62,8 @@ TEST(Decks, SecondOrderNodesAreOnTheRightEdgesInEveryFormat) {
   TetMesh mesh = sample_mesh();
   mesh = second_order(std::move(mesh));
   const int code = check_formats(mesh, 2, {"foo.vtu", "foo.vtk", "foo.msh", "foo2.msh", "foo.inp", "foo.feb"});
-  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+  if (code == 77 || code == 127)
+    GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
   EXPECT_EQ(code, 0);
 }
 
@@ -67,9 +71,11 @@ TEST(Decks, AnsysDynaExodusAndMedHoldMeshAndSetsInBothOrders) {
   for (const int order : {1, 2})
     for (const char* name : {"foo.cdb", "foo.k", "foo.exo", "foo.med"}) {
       const bool med = std::string(name) == "foo.med";
-      if (med && run("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) continue;  // NOT TESTED: meshio reads .med with python3-h5py
+      // NOT TESTED: meshio reads .med with python3-h5py
+      if (med && run("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) continue;
       const int code = check_formats(order == 1 ? sample_mesh() : second_order_sample(), order, {name});
-      if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+      if (code == 77 || code == 127)
+        GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
       EXPECT_EQ(code, 0) << name << ", order " << order;
     }
 }
@@ -80,7 +86,10 @@ TEST(Decks, AMedFileThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
   const std::string to = folder + "/full";
   for (const char* ending : {".med", ".exo"}) {
     // A bound on the size of files stands for a full disk.
-    const int code = run("cd '" + folder + "' && (ulimit -f 8; '" STACKMESH_PROGRAM "' mesh '" STACKMESH_TESTDATA "/vessel.nii.gz' -o full" + ending + " --quiet) 2>full.log");
+    const int code =
+        run("cd '" + folder +
+            "' && (ulimit -f 8; '" STACKMESH_PROGRAM "' mesh '" STACKMESH_TESTDATA "/vessel.nii.gz' -o full" + ending +
+            " --quiet) 2>full.log");
     EXPECT_EQ(code, 5) << read_file(folder + "/full.log");
     EXPECT_NE(run("test -e '" + to + ending + "'"), 0);
     EXPECT_NE(run("ls '" + folder + "' | grep -q part"), 0);
@@ -114,7 +123,8 @@ TEST(Decks, GmshReadsTheNastranDeckInBothOrders) {
     write_volume(files, folder + "/foo.bdf", mesh, {});
     files.commit();
     ASSERT_EQ(run("cd '" + folder + "' && gmsh foo.bdf -save -format msh22 -o again.msh >again.log 2>&1"), 0) << folder;
-    // Gmsh numbers the nodes of a tet as its own format does, so it must find every element positive and the labels as groups.
+    // Gmsh numbers the nodes of a tet as its own format does, so it must find every element positive and the labels as
+    // groups.
     std::ifstream file(folder + "/again.msh");
     std::string word;
     std::vector<Vec3> points(mesh.points.size());
@@ -144,7 +154,8 @@ TEST(Decks, GmshReadsTheNastranDeckInBothOrders) {
           if (order == 1) continue;
           constexpr int edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};  // Gmsh's
           for (int e = 0; e < 6; ++e) {
-            const Vec3 a = points.at(v[edges[e][0]] - 1), b = points.at(v[edges[e][1]] - 1), m = points.at(v[4 + e] - 1);
+            const Vec3 a = points.at(v[edges[e][0]] - 1), b = points.at(v[edges[e][1]] - 1),
+                       m = points.at(v[4 + e] - 1);
             ASSERT_LT(norm(m - 0.5 * (a + b)), 0.2 * norm(b - a));
           }
         }
@@ -155,7 +166,9 @@ TEST(Decks, GmshReadsTheNastranDeckInBothOrders) {
     std::vector<Vec3> meant = mesh.points;
     for (std::vector<Vec3>* list : {&points, &meant})
       std::sort(list->begin(), list->end(), [](Vec3 a, Vec3 b) {
-        const auto key = [](Vec3 p) { return std::array<long, 3>{std::lround(1e6 * p.x), std::lround(1e6 * p.y), std::lround(1e6 * p.z)}; };
+        const auto key = [](Vec3 p) {
+          return std::array<long, 3>{std::lround(1e6 * p.x), std::lround(1e6 * p.y), std::lround(1e6 * p.z)};
+        };
         return key(a) < key(b);
       });
     for (std::size_t i = 0; i < points.size(); ++i) ASSERT_LT(norm(points[i] - meant[i]), 1e-9);
@@ -165,7 +178,8 @@ TEST(Decks, GmshReadsTheNastranDeckInBothOrders) {
 
 TEST(Decks, NastranNumbersKeepWithinSixteenCharacters) {
   TetMesh mesh = sample_mesh();
-  const double awkward[] = {-1.2345678901234567e-5, -0.012345678901234567, -123456.78901234567, -1.2345678901234567e-105};
+  const double awkward[] = {-1.2345678901234567e-5, -0.012345678901234567, -123456.78901234567,
+                            -1.2345678901234567e-105};
   for (int i = 0; i < 4; ++i) mesh.points[i].x = awkward[i];
   const std::string path = testing::TempDir() + "awkward.bdf";
   AtomicFiles files;

@@ -51,8 +51,8 @@ std::vector<std::string> write_sample(const std::string& folder, Space space) {
   return names;
 }
 
-void write_expectation(const std::string& folder, const std::vector<std::string>& names,
-                       const std::string& space, const TetMesh& mesh = sample_mesh()) {
+void write_expectation(const std::string& folder, const std::vector<std::string>& names, const std::string& space,
+                       const TetMesh& mesh = sample_mesh()) {
   std::ofstream points(folder + "/points.bin", std::ios::binary);
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
     if (mesh.points[i].x < 1e6)  // the unused one
@@ -62,20 +62,18 @@ void write_expectation(const std::string& folder, const std::vector<std::string>
 
   std::ofstream json(folder + "/expected.json");
   json.precision(17);
-  json << "{\"order\": " << (mesh.mid.empty() ? 1 : 2) << ", \"space\": \"" << space << "\", \"points\": " << mesh.points.size() - 1
-       << ", \"surface_points\": " << on_surface.size() << ", \"tets\": " << mesh.tets.size()
-       << ", \"triangles\": " << mesh.faces.size() << ",\n\"files\": [";
+  json << "{\"order\": " << (mesh.mid.empty() ? 1 : 2) << ", \"space\": \"" << space
+       << "\", \"points\": " << mesh.points.size() - 1 << ", \"surface_points\": " << on_surface.size()
+       << ", \"tets\": " << mesh.tets.size() << ", \"triangles\": " << mesh.faces.size() << ",\n\"files\": [";
   for (std::size_t i = 0; i < names.size(); ++i) json << (i > 0 ? ", " : "") << '"' << names[i] << '"';
   json << "],\n\"labels\": [";
   const struct {
     Label label;
     const char *name, *set;
-  } labels[] = {
-      {3, "femur left", "femur_left"}, {7, "label_7", "label_7"}, {12, "femur left_2", "femur_left_2"}};
+  } labels[] = {{3, "femur left", "femur_left"}, {7, "label_7", "label_7"}, {12, "femur left_2", "femur_left_2"}};
   for (const auto& l : labels)
-    json << (l.label == 3 ? "" : ",\n") << "{\"label\": " << l.label << ", \"name\": \"" << l.name
-         << "\", \"set\": \"" << l.set
-         << "\", \"tets\": " << std::count(mesh.labels.begin(), mesh.labels.end(), l.label)
+    json << (l.label == 3 ? "" : ",\n") << "{\"label\": " << l.label << ", \"name\": \"" << l.name << "\", \"set\": \""
+         << l.set << "\", \"tets\": " << std::count(mesh.labels.begin(), mesh.labels.end(), l.label)
          << ", \"volume\": " << tet_volume(mesh, l.label) << "}";
   json << "],\n\"pairs\": [";
   const struct {
@@ -90,8 +88,8 @@ void write_expectation(const std::string& folder, const std::vector<std::string>
     const auto count = std::count_if(mesh.faces.begin(), mesh.faces.end(), [&](const InterfaceTriangle& t) {
       return (t.below == p.below && t.above == p.above) || (t.below == p.above && t.above == p.below);
     });
-    json << (p.below == 3 && p.above == 0 ? "" : ",\n") << "{\"below\": " << p.below
-         << ", \"above\": " << p.above << ", \"name\": \"" << p.name << "\", \"triangles\": " << count << "}";
+    json << (p.below == 3 && p.above == 0 ? "" : ",\n") << "{\"below\": " << p.below << ", \"above\": " << p.above
+         << ", \"name\": \"" << p.name << "\", \"triangles\": " << count << "}";
   }
   json << "]}\n";
 }
@@ -112,8 +110,7 @@ TEST_P(Readback, VtkAndMeshioFindTheSameCountsLabelsAndVolumes) {
   EXPECT_EQ(code, 0) << "see the lines above; files in " << folder;
 }
 INSTANTIATE_TEST_SUITE_P(Spaces, Readback,
-                         testing::Values(std::make_pair(Space::lps, "LPS"),
-                                         std::make_pair(Space::ras, "RAS"),
+                         testing::Values(std::make_pair(Space::lps, "LPS"), std::make_pair(Space::ras, "RAS"),
                                          std::make_pair(Space::none, "")));
 
 /// Writes the second-order sample; the surface file is that of the corners.
@@ -140,7 +137,8 @@ TEST(SecondOrderReadback, EveryNodeIsOnItsEdgeInEveryFormat) {
   const TetMesh mesh = second_order_sample();
   write_expectation(folder, write_second_order(folder, mesh), "LPS", mesh);
   const int code = read_back(folder);
-  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+  if (code == 77 || code == 127)
+    GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
   EXPECT_EQ(code, 0) << "see the lines above; files in " << folder;
 }
 
@@ -150,7 +148,8 @@ TEST(SecondOrderReadback, TheScriptSeesTwoNodesExchanged) {
   for (auto& m : mesh.mid) std::swap(m[4], m[5]);
   write_expectation(folder, write_second_order(folder, mesh), "LPS", mesh);
   const int code = read_back(folder);
-  if (code == 77 || code == 127) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+  if (code == 77 || code == 127)
+    GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
   EXPECT_EQ(code, 1);
 }
 
@@ -168,7 +167,8 @@ TEST(SecondOrderReadback, GmshChecksTheFilesAndGivesVtkTheSameOrder) {
     EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
   }
   // Gmsh writes VTK in VTK's order from what it read in its own.
-  ASSERT_EQ(run("cd '" + folder + "' && gmsh foo.msh -save -format vtk -o again.vtk >again.log 2>&1"), 0) << read_file(folder + "/again.log");
+  ASSERT_EQ(run("cd '" + folder + "' && gmsh foo.msh -save -format vtk -o again.vtk >again.log 2>&1"), 0)
+      << read_file(folder + "/again.log");
   std::ofstream(folder + "/order.py") << R"(
 import sys
 try:

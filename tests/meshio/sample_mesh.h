@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "meshio/write_mesh.h"
 #include "blocks.h"
+#include "meshio/write_mesh.h"
 #include "model/complex.h"
 #include "model/tet_mesh.h"
 
@@ -38,10 +38,8 @@ inline TetMesh sample_mesh(int n = 4) {
   std::map<std::array<std::int32_t, 3>, Side> sides;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const auto& a = mesh.tets[t];
-    for (const auto& face : {std::array<std::int32_t, 3>{a[1], a[2], a[3]},
-                             {a[0], a[3], a[2]},
-                             {a[0], a[1], a[3]},
-                             {a[0], a[2], a[1]}}) {
+    for (const auto& face :
+         {std::array<std::int32_t, 3>{a[1], a[2], a[3]}, {a[0], a[3], a[2]}, {a[0], a[1], a[3]}, {a[0], a[2], a[1]}}) {
       auto key = face;
       std::sort(key.begin(), key.end());
       const auto [at, fresh] = sides.insert({key, {face, mesh.labels[t], 0}});
@@ -50,10 +48,8 @@ inline TetMesh sample_mesh(int n = 4) {
   }
   for (const auto& [key, side] : sides) {
     if (side.in == side.out) continue;
-    if (mesh.faces.size() % 2 == 0)
-      mesh.faces.push_back({side.v, side.in, side.out});
-    else
-      mesh.faces.push_back({{side.v[0], side.v[2], side.v[1]}, side.out, side.in});
+    if (mesh.faces.size() % 2 == 0) mesh.faces.push_back({side.v, side.in, side.out});
+    else mesh.faces.push_back({{side.v[0], side.v[2], side.v[1]}, side.out, side.in});
   }
   mesh.points.push_back({1e6, 1e6, 1e6});
   return mesh;
@@ -78,7 +74,9 @@ inline TetMesh second_order(TetMesh mesh) {
   return mesh;
 }
 
-inline TetMesh second_order_sample(int n = 4) { return second_order(sample_mesh(n)); }
+inline TetMesh second_order_sample(int n = 4) {
+  return second_order(sample_mesh(n));
+}
 
 inline InterfaceComplex sample_surface(const TetMesh& mesh) {
   return {mesh.points, mesh.faces, mesh.space};

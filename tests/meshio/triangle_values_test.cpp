@@ -19,14 +19,17 @@ using namespace stackmesh;
 namespace {
 
 TEST(TriangleValues, AreThoseOfTheTetBehind) {
-  // Three labels in a row, a modulus that differs from tet to tet; with parts, too, whose faces have nodes of their own.
+  // Three labels in a row, a modulus that differs from tet to tet; with parts, too, whose faces have nodes of their
+  // own.
   for (const bool parts : {false, true}) {
     SetOptions options;
     if (parts) options.parts = {{"A", {1, 3}}, {"B", {2}}};
-    SolverModel model = name_sets(blocks::block(3, 2, 2, {1, 1, 1}, [](int i, int, int) { return i + 1; }), {}, options);
+    SolverModel model =
+        name_sets(blocks::block(3, 2, 2, {1, 1, 1}, [](int i, int, int) { return i + 1; }), {}, options);
     assign_materials(model, nullptr, nullptr);
     for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) model.sets.modulus_mpa[t] = 100.0 + static_cast<double>(t);
-    const std::string path = (std::filesystem::temp_directory_path() / ("triangle_values_" + std::to_string(::getpid()) + ".vtu")).string();
+    const std::string path =
+        (std::filesystem::temp_directory_path() / ("triangle_values_" + std::to_string(::getpid()) + ".vtu")).string();
     AtomicFiles files;
     write_model(files, path, model, {});
     files.commit();
@@ -39,7 +42,8 @@ TEST(TriangleValues, AreThoseOfTheTetBehind) {
     // The appended arrays, by the offsets in the header.
     const auto array = [&](const std::string& name) {
       const std::size_t at = bytes.find("Name=\"" + name + "\""), offset = bytes.find("offset=\"", at) + 8;
-      const std::size_t begin = bytes.find("<AppendedData encoding=\"raw\">\n_") + 31 + std::stoul(bytes.substr(offset, 20));
+      const std::size_t begin =
+          bytes.find("<AppendedData encoding=\"raw\">\n_") + 31 + std::stoul(bytes.substr(offset, 20));
       std::uint64_t size = 0;
       std::memcpy(&size, &bytes[begin], 8);
       return std::make_pair(begin + 8, static_cast<std::size_t>(size));

@@ -105,8 +105,7 @@ TEST(WriteSurface, StlMarksRasAndLeavesTheMarkOutWithoutAnatomy) {
 
 TEST(WriteSurface, EveryFormatSaysItsSpace) {
   for (const char* ending : {".stl", ".ply", ".obj", ".off", ".vtp"})
-    EXPECT_NE(written_surface(ending, sample_surface(one_tet()), {}).find("SPACE=LPS"), std::string::npos)
-        << ending;
+    EXPECT_NE(written_surface(ending, sample_surface(one_tet()), {}).find("SPACE=LPS"), std::string::npos) << ending;
   for (const char* ending : {".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh"})
     EXPECT_NE(written_volume(ending, one_tet(), {}).find("SPACE=LPS"), std::string::npos) << ending;
 }
@@ -125,8 +124,7 @@ TEST(WriteSurface, ObjCoordinatesReadBackBitExactAndGroupsFollowThePairs) {
     if (key == "v") {
       std::string x, y, z;
       text >> x >> y >> z;
-      found.insert({std::strtod(x.c_str(), nullptr), std::strtod(y.c_str(), nullptr),
-                    std::strtod(z.c_str(), nullptr)});
+      found.insert({std::strtod(x.c_str(), nullptr), std::strtod(y.c_str(), nullptr), std::strtod(z.c_str(), nullptr)});
     } else if (key == "g") {
       groups.emplace_back();
       text >> groups.back();
@@ -135,9 +133,8 @@ TEST(WriteSurface, ObjCoordinatesReadBackBitExactAndGroupsFollowThePairs) {
     }
   }
   EXPECT_EQ(found, meant);
-  EXPECT_EQ(groups, (std::vector<std::string>{"femur_left|background", "femur_left|label_7",
-                                              "femur_left|femur_left_2", "label_7|background",
-                                              "label_7|femur_left_2"}));
+  EXPECT_EQ(groups, (std::vector<std::string>{"femur_left|background", "femur_left|label_7", "femur_left|femur_left_2",
+                                              "label_7|background", "label_7|femur_left_2"}));
 }
 
 TEST(WriteSurface, PerLabelFilesAreClosedOutwardAndNamedByTheirLabel) {

@@ -25,13 +25,17 @@ int main() {
     double mm3[8] = {};
     for (std::size_t t = 0; t < mesh.tets->tets.size(); ++t) {
       const auto& v = mesh.tets->tets[t];
-      const Vec3 a = mesh.tets->points[v[0]], b = mesh.tets->points[v[1]] - a, c = mesh.tets->points[v[2]] - a, d = mesh.tets->points[v[3]] - a;
+      const Vec3 a = mesh.tets->points[v[0]], b = mesh.tets->points[v[1]] - a, c = mesh.tets->points[v[2]] - a,
+                 d = mesh.tets->points[v[3]] - a;
       mm3[mesh.tets->labels[t]] += dot(b, cross(c, d)) / 6;
     }
-    std::printf("labels: %zu tetrahedra, ball %.0f mm3, shell %.0f mm3, stackmesh %s\n", mesh.tets->tets.size(), mm3[2], mm3[7], STACKMESH_VERSION_TEXT);
-    return std::abs(mm3[2] / mesh.input_volume_mm3.at(2) - 1) < 0.005 && mesh.surface_check.self_intersections == 0 ? 0 : 1;
+    std::printf("labels: %zu tetrahedra, ball %.0f mm3, shell %.0f mm3, stackmesh %s\n", mesh.tets->tets.size(), mm3[2],
+                mm3[7], STACKMESH_VERSION_TEXT);
+    return std::abs(mm3[2] / mesh.input_volume_mm3.at(2) - 1) < 0.005 && mesh.surface_check.self_intersections == 0 ? 0
+                                                                                                                    : 1;
   } catch (const Error& e) {
-    std::fprintf(stderr, "%s\n  where: %s\n  what to do: %s\n", e.problem().c_str(), e.where().c_str(), e.mend().c_str());
+    std::fprintf(stderr, "%s\n  where: %s\n  what to do: %s\n", e.problem().c_str(), e.where().c_str(),
+                 e.mend().c_str());
     return 1;
   }
 }

@@ -138,15 +138,13 @@ TEST_F(BadInput, IntensityImageGivenByMistake) {
           {"given by mistake", "0.5 is not a whole number", "voxel (1, 0, 0)"});
   std::vector<std::int16_t> negative(2000, 0);
   negative[21] = -1000;
-  refuses(write("b.nii", big_volume(4, negative)),
-          {"given by mistake", "negative value -1000", "voxel (1, 1, 0)"});
+  refuses(write("b.nii", big_volume(4, negative)), {"given by mistake", "negative value -1000", "voxel (1, 1, 0)"});
   std::vector<std::int16_t> many(2000);
   std::iota(many.begin(), many.end(), std::int16_t{0});
   refuses(write("c.nii", big_volume(4, many)), {"given by mistake", "more than 1000 distinct values"});
   std::vector<float> infinite(12, 0.f);
   infinite[5] = INFINITY;
-  refuses(write("d.nrrd", nrrd("float", lps_grid, pack<float>(infinite))),
-          {"given by mistake", "voxel (2, 1, 0)"});
+  refuses(write("d.nrrd", nrrd("float", lps_grid, pack<float>(infinite))), {"given by mistake", "voxel (2, 1, 0)"});
 }
 
 TEST_F(BadInput, AThousandLabelsAreNotTooMany) {
@@ -168,15 +166,13 @@ TEST_F(BadInput, OneSliceOnly) {
 TEST_F(BadInput, SlicesOfDifferentSizes) {
   write("s/slice1.png", grey_png(3, 2, {0, 1, 1, 0, 1, 1}));
   write("s/slice2.png", grey_png(2, 2, {1, 1, 1, 1}));
-  refuses(in("s"), {"differ in size: 2 x 2 against 3 x 2", "slice2.png", "slice1.png"},
-          {"--spacing", "1,1,2"});
+  refuses(in("s"), {"differ in size: 2 x 2 against 3 x 2", "slice2.png", "slice1.png"}, {"--spacing", "1,1,2"});
 }
 
 TEST_F(BadInput, MissingSliceNumberIsAWarning) {
   for (const char* name : {"s/slice_8.png", "s/slice_9.png", "s/slice_12.png"})
     write(name, grey_png(3, 2, {0, 1, 1, 0, 1, 1}));
-  const Ended r =
-      succeeds({"mesh", in("s"), "--spacing", "1,1,2", "-o", out("a.vtu"), "--report", out("R.json")});
+  const Ended r = succeeds({"mesh", in("s"), "--spacing", "1,1,2", "-o", out("a.vtu"), "--report", out("R.json")});
   EXPECT_TRUE(r.warns_of("10")) << r.err;
   EXPECT_EQ(r.err.find("error"), std::string::npos) << r.err;
   EXPECT_EQ(report().at("input").at("sections"), 3);
@@ -206,17 +202,17 @@ TEST_F(BadContours, FewerThanThreePoints) {
 }
 
 TEST_F(BadContours, RepeatedPointsAreCleanedWithAWarning) {
-  const std::string input =
-      write("a.cnt", "S 2\nv 6 z 0\n{\n0 0\n10 0\n10 0\n10 10\n0 10\n0 0\n}\nv 4 z 1\n" + square);
-  const Ended r = succeeds({"mesh", input, "-o", out("a.vtu"), "--report", out("R.json"), "--caps", "flat", "--no-enhance"});
+  const std::string input = write("a.cnt", "S 2\nv 6 z 0\n{\n0 0\n10 0\n10 0\n10 10\n0 10\n0 0\n}\nv 4 z 1\n" + square);
+  const Ended r =
+      succeeds({"mesh", input, "-o", out("a.vtu"), "--report", out("R.json"), "--caps", "flat", "--no-enhance"});
   EXPECT_TRUE(r.warns_of("2 repeated points removed (section 1")) << r.err;
   EXPECT_EQ(report().at("contours").at("vertices"), 8);
   EXPECT_NEAR(row(report(), 1).at("tet_volume_mm3").get<double>(), 100, 1e-9);
 }
 
 TEST_F(BadContours, BowTie) {
-  refuses(write("a.cnt", "S 2\nv 4 z 0\n" + square +
-                             "v 8 z 1\n{\n20 0\n30 0\n30 10\n20 10\n}\n{\n0 0\n10 10\n10 0\n0 10\n}\n"),
+  refuses(write("a.cnt",
+                "S 2\nv 4 z 0\n" + square + "v 8 z 1\n{\n20 0\n30 0\n30 10\n20 10\n}\n{\n0 0\n10 10\n10 0\n0 10\n}\n"),
           {"crosses itself", "section 2", "contour 2"});
 }
 
@@ -230,8 +226,7 @@ TEST_F(BadContours, NonFiniteCoordinates) {
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "NaN"}) {
     refuses(write("a.cnt", std::string("S 2\nv 3 z 0\n{\n0 0\n10 ") + bad + "\n0 10\n}\nv 4 z 1\n" + square),
             {bad, "line 5"});
-    refuses(write("b.cnt", std::string("S 2\nv 4 z ") + bad + "\n" + square + "v 4 z 1\n" + square),
-            {bad, "line 2"});
+    refuses(write("b.cnt", std::string("S 2\nv 4 z ") + bad + "\n" + square + "v 4 z 1\n" + square), {bad, "line 2"});
   }
 }
 

@@ -43,8 +43,7 @@ TEST_F(BadOutput, FolderThatMayNotBeWritten) {
   ::chmod(folder.c_str(), 0555);
   Around around;
   around.in_child = obey_permissions;
-  if (stackmesh({"--version"}, around).code == 99)
-    GTEST_SKIP() << "NOT TESTED: root may not give up its rights here";
+  if (stackmesh({"--version"}, around).code == 99) GTEST_SKIP() << "NOT TESTED: root may not give up its rights here";
   fails(5, {"mesh", input_, "-o", folder + "/a.vtu"}, {folder + "/a.vtu", "may write"}, {"locked"}, around);
   EXPECT_TRUE(fs::is_empty(folder));
 }
@@ -54,8 +53,7 @@ TEST_F(BadOutput, FileThatMayNotBeReplaced) {
   ::chmod(out("a.vtu").c_str(), 0444);
   Around around;
   around.in_child = obey_permissions;
-  if (stackmesh({"--version"}, around).code == 99)
-    GTEST_SKIP() << "NOT TESTED: root may not give up its rights here";
+  if (stackmesh({"--version"}, around).code == 99) GTEST_SKIP() << "NOT TESTED: root may not give up its rights here";
   fails(5, {"mesh", input_, "-o", out("a.vtu")}, {out("a.vtu")}, {"a.vtu"}, around);
   EXPECT_EQ(read_file(out("a.vtu")), "precious");
 }
@@ -141,9 +139,7 @@ bool is_worker(int pid) {
 }
 
 TEST_F(Worker, OutOfTimeIsExit4WithTheReport) {
-  fails(4,
-        {"mesh", input_, "-o", out("a.vtu"), "-o", out("a.stl"), "--report", out("R.json"), "--timeout",
-         "0.05"},
+  fails(4, {"mesh", input_, "-o", out("a.vtu"), "-o", out("a.stl"), "--report", out("R.json"), "--timeout", "0.05"},
         {"was ended after", input_, "--timeout"}, {"R.json"});
   check_report();
 }
@@ -156,8 +152,8 @@ TEST_F(Worker, KilledIsExit4WithTheReport) {
       if (is_worker(child) && ::kill(child, SIGKILL) == 0) ++killed;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
-  fails(4, {"mesh", input_, "-o", out("a.vtu"), "--report", out("R.json")}, {"killed by signal 9", input_},
-        {"R.json"}, around);
+  fails(4, {"mesh", input_, "-o", out("a.vtu"), "--report", out("R.json")}, {"killed by signal 9", input_}, {"R.json"},
+        around);
   EXPECT_GT(killed, 0);
   check_report();
 }
@@ -176,8 +172,7 @@ TEST_F(Worker, EndsWithTheProgram) {
   ASSERT_NE(worker, 0);
   EXPECT_EQ(r.code, -SIGTERM);
   EXPECT_EQ(written(), std::vector<std::string>{});
-  for (int i = 0; i < 200 && is_worker(worker); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (int i = 0; i < 200 && is_worker(worker); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_FALSE(is_worker(worker)) << "the worker is still there 10 s later";
 }
 

@@ -11,8 +11,10 @@ class CornerCases : public ProgramTest {
  protected:
   /// A volume of 14 x 13 x 9 voxels of 1 x 1 x `gap` mm.
   std::string volume(double gap, const std::function<int(int, int, int)>& label) const {
-    std::string bytes = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nDimSize = 14 13 9\nElementSpacing = 1 1 " +
-                        std::to_string(gap) + "\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+    std::string bytes =
+        "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nDimSize = 14 13 "
+        "9\nElementSpacing = 1 1 " +
+        std::to_string(gap) + "\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
     for (int k = 0; k < 9; ++k)
       for (int j = 0; j < 13; ++j)
         for (int i = 0; i < 14; ++i) bytes += static_cast<char>(label(i, j, k));

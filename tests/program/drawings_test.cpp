@@ -1,4 +1,5 @@
-// Drawn contours and thresholded volumes with no option: what made needles and folds, as surfaces and meshes that serve.
+// Drawn contours and thresholded volumes with no option: what made needles and folds, as surfaces and meshes that
+// serve.
 #include "program.h"
 
 namespace program {
@@ -21,9 +22,13 @@ class Drawings : public ProgramTest {
   }
 };
 
-TEST_F(Drawings, AFemursFoldsAreTakenOut) { serves("femur_proximal/sections/femur_12_50.cnt", 12, 8); }
+TEST_F(Drawings, AFemursFoldsAreTakenOut) {
+  serves("femur_proximal/sections/femur_12_50.cnt", 12, 8);
+}
 
-TEST_F(Drawings, AVentriclesNeedlesAreTakenOut) { serves("heart_sax_sunnybrook/SC-HF-I-1/endo_ED.cnt", 12, 8); }
+TEST_F(Drawings, AVentriclesNeedlesAreTakenOut) {
+  serves("heart_sax_sunnybrook/SC-HF-I-1/endo_ED.cnt", 12, 8);
+}
 
 TEST_F(Drawings, ASpeckOfATwentiethOfAMillimetreIsKeptAndMeshed) {
   serves("thorax_rtstruct_dicompyler/contours/Lt_Lung.cnt", 5, 5);

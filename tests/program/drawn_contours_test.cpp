@@ -80,7 +80,8 @@ TEST_F(DrawnContours, AContourDrawnTwiceCountsOnce) {
   const Json r = surface({testdata("drawn/rt_dup.dcm")});
   has(r, 1, 30096);
   ASSERT_EQ(r.at("warnings").size(), 1u);
-  EXPECT_NE(r.at("warnings")[0].get<std::string>().find("'A' repeats 1 of its contours, or nearly so, at z = 9 mm"), std::string::npos);
+  EXPECT_NE(r.at("warnings")[0].get<std::string>().find("'A' repeats 1 of its contours, or nearly so, at z = 9 mm"),
+            std::string::npos);
 }
 
 TEST_F(DrawnContours, EndsDoNotDependOnTheOtherStructures) {
@@ -94,7 +95,8 @@ TEST_F(DrawnContours, EndsDoNotDependOnTheOtherStructures) {
 }
 
 TEST_F(DrawnContours, AHeartsCavityStaysInsideItsWall) {
-  const std::string epi = shared_data("heart_sax_sunnybrook/SC-HF-I-2/epi_ED.cnt"), endo = shared_data("heart_sax_sunnybrook/SC-HF-I-2/endo_ED.cnt");
+  const std::string epi = shared_data("heart_sax_sunnybrook/SC-HF-I-2/epi_ED.cnt"),
+                    endo = shared_data("heart_sax_sunnybrook/SC-HF-I-2/endo_ED.cnt");
   if (epi.empty()) GTEST_SKIP() << "NOT TESTED: needs ../shared/data/heart_sax_sunnybrook";
   for (const char* per_gap : {"auto", "0"}) {
     const Json r = surface({"1=" + epi, "2=" + endo, "--interpolate", per_gap});
@@ -108,11 +110,15 @@ TEST_F(DrawnContours, AHeartsCavityStaysInsideItsWall) {
 }
 
 TEST_F(DrawnContours, AWallThatItsContoursOpenIsNamed) {
-  const std::string epi = shared_data("heart_sax_sunnybrook/SC-HF-I-1/epi_ED.cnt"), endo = shared_data("heart_sax_sunnybrook/SC-HF-I-1/endo_ED.cnt");
+  const std::string epi = shared_data("heart_sax_sunnybrook/SC-HF-I-1/epi_ED.cnt"),
+                    endo = shared_data("heart_sax_sunnybrook/SC-HF-I-1/endo_ED.cnt");
   if (epi.empty()) GTEST_SKIP() << "NOT TESTED: needs ../shared/data/heart_sax_sunnybrook";
-  const Ended r = succeeds({"surface", "1=" + epi, "2=" + endo, "--raw", "-o", out("a.off"), "--report", out("R.json")});
+  const Ended r =
+      succeeds({"surface", "1=" + epi, "2=" + endo, "--raw", "-o", out("a.off"), "--report", out("R.json")});
   EXPECT_TRUE(r.warns_of("label 2 lies inside label 1, but reaches its outline at z = -58.9")) << r.err;
-  EXPECT_TRUE(r.warns_of("over about 167 mm2: 141 mm2 at (163.6, 198.1, -58.9035), 26.2 mm2 at (171.9, 211.9, -58.9035)")) << "one by one: " << r.err;
+  EXPECT_TRUE(
+      r.warns_of("over about 167 mm2: 141 mm2 at (163.6, 198.1, -58.9035), 26.2 mm2 at (171.9, 211.9, -58.9035)"))
+      << "one by one: " << r.err;
   // Slivers of wall between contours that run on each other hang on nothing, and are named one by one.
   std::size_t loose = 0;
   const Json with_defects = report();
@@ -130,9 +136,11 @@ TEST_F(DrawnContours, EitherEndIsClosedAsAsked) {
   EXPECT_NEAR(box(1).high[2], 21, kPlace);
   EXPECT_LT(box(1).low[2], -0.7) << "a dome of up to half a gap";
   EXPECT_GE(box(1).low[2], -1.5);
-  EXPECT_EQ(row(surface({file, "--caps", "1:low=round"}), 1).at("caps"), (Json{{"low", "round"}, {"high", "flat"}})) << "the other end by itself";
+  EXPECT_EQ(row(surface({file, "--caps", "1:low=round"}), 1).at("caps"), (Json{{"low", "round"}, {"high", "flat"}}))
+      << "the other end by itself";
   for (const char* name : {"a.off", "R.json", "a_1.off"}) std::remove(out(name).c_str());
-  fails(2, {"surface", file, "--caps", "1:high=flat,high=round", "-o", out("b.off")}, {"the high end of label '1' is named twice"});
+  fails(2, {"surface", file, "--caps", "1:high=flat,high=round", "-o", out("b.off")},
+        {"the high end of label '1' is named twice"});
   fails(2, {"surface", file, "--caps", "1:high=oval", "-o", out("b.off")}, {"unknown cap 'oval'"});
   fails(3, {"surface", file, "--caps", "1:top=flat", "-o", out("b.off")}, {"--caps 1:top"});
 }
@@ -141,13 +149,21 @@ TEST_F(DrawnContours, PiecesAreLeftOutWhereAsked) {
   // Two cubes of 20 and one of 6 mm, the larger one with a hole that holds another cube.
   const auto square = [](double x, double y, double half) {
     std::ostringstream s;
-    s << "{\n" << x - half << " " << y - half << "\n" << x + half << " " << y - half << "\n" << x + half << " " << y + half << "\n" << x - half << " " << y + half << "\n}\n";
+    s << "{\n"
+      << x - half << " " << y - half << "\n"
+      << x + half << " " << y - half << "\n"
+      << x + half << " " << y + half << "\n"
+      << x - half << " " << y + half << "\n}\n";
     return s.str();
   };
   std::string text = "S 6\n";
   for (int k = 0; k < 6; ++k) {
     const bool hollow = k > 0 && k < 5, core = k == 2 || k == 3;
-    text += "v " + std::to_string(core ? 20 : hollow ? 16 : 12) + " z " + std::to_string(4 * k) + "\n" + square(0, 0, 10) + square(40, 0, 9) + square(70, 0, 3);
+    text += "v " +
+            std::to_string(core     ? 20
+                           : hollow ? 16
+                                    : 12) +
+            " z " + std::to_string(4 * k) + "\n" + square(0, 0, 10) + square(40, 0, 9) + square(70, 0, 3);
     if (hollow) text += square(0, 0, 7);
     if (core) text += square(0, 0, 2);
   }
@@ -165,16 +181,22 @@ TEST_F(DrawnContours, PiecesAreLeftOutWhereAsked) {
   EXPECT_EQ(pieces({"--min-piece", "1000"}), 2);
   bool said = false;
   const Json last = report();
-  for (const Json& w : last.at("warnings")) said = said || w.get<std::string>().find("2 of its 4 pieces") != std::string::npos;
+  for (const Json& w : last.at("warnings"))
+    said = said || w.get<std::string>().find("2 of its 4 pieces") != std::string::npos;
   EXPECT_TRUE(said);
   // What cannot be meant is refused before anything is written.
   for (const char* name : {"a.off", "R.json", "a_1.off"}) std::remove(out(name).c_str());
-  fails(2, {"surface", file, "--min-piece", "1e12", "-o", out("b.off")}, {"no piece of any label is as large", "--min-piece 1e+12"});
-  for (const char* bad : {"0", "-5", "nan", "x"}) fails(2, {"surface", file, "--min-piece", bad, "-o", out("b.off")}, {"--min-piece", bad});
-  for (const char* bad : {"0", "-1", "two", "1.5"}) fails(2, {"surface", file, "-o", out("b.off"), "--keep-largest", bad}, {"--keep-largest", bad});
+  fails(2, {"surface", file, "--min-piece", "1e12", "-o", out("b.off")},
+        {"no piece of any label is as large", "--min-piece 1e+12"});
+  for (const char* bad : {"0", "-5", "nan", "x"})
+    fails(2, {"surface", file, "--min-piece", bad, "-o", out("b.off")}, {"--min-piece", bad});
+  for (const char* bad : {"0", "-1", "two", "1.5"})
+    fails(2, {"surface", file, "-o", out("b.off"), "--keep-largest", bad}, {"--keep-largest", bad});
   // Voxels alike.
-  fails(2, {"surface", testdata("noise.nii.gz"), "--raw", "--min-piece", "1e12", "-o", out("b.off")}, {"no piece of any label is as large"});
-  const Json all = surface({testdata("noise.nii.gz"), "--raw"}), one = surface({testdata("noise.nii.gz"), "--raw", "--keep-largest"});
+  fails(2, {"surface", testdata("noise.nii.gz"), "--raw", "--min-piece", "1e12", "-o", out("b.off")},
+        {"no piece of any label is as large"});
+  const Json all = surface({testdata("noise.nii.gz"), "--raw"}),
+             one = surface({testdata("noise.nii.gz"), "--raw", "--keep-largest"});
   for (const Json& l : one.at("labels")) {
     EXPECT_EQ(l.at("components"), 1);
     EXPECT_EQ(l.at("input_components"), 1);

@@ -1,4 +1,5 @@
-// Drawn shapes with no option, through the program: the enhanced surface is what was drawn, in volume, place, genus and ends.
+// Drawn shapes with no option, through the program: the enhanced surface is what was drawn, in volume, place, genus and
+// ends.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +22,9 @@ using Outlines = std::vector<Outline>;
 constexpr double kPlace = 0.05;  // mm: of every vertex
 constexpr double kChord = 0.12;  // mm: of every drawn point from the triangles, whose edges are chords of the outlines
 
-Outline box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
+Outline box(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
 
 Outline disc(double cx, double cy, double r, int n = 64) {
   Outline p;
@@ -29,7 +32,9 @@ Outline disc(double cx, double cy, double r, int n = 64) {
   return p;
 }
 
-double disc_area(double r, int n) { return 0.5 * n * std::sin(2 * M_PI / n) * r * r; }
+double disc_area(double r, int n) {
+  return 0.5 * n * std::sin(2 * M_PI / n) * r * r;
+}
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, n = cross(ab, ac);
@@ -38,7 +43,8 @@ double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
     const Vec3 q = p - (u + std::clamp(dot(p - u, e) / std::max(dot(e, e), 1e-300), 0.0, 1.0) * e);
     return dot(q, q);
   };
-  const bool above = dot(cross(ab, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  const bool above =
+      dot(cross(ab, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
   if (above && dot(n, n) > 0) return dot(p - a, n) * dot(p - a, n) / dot(n, n);
   return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
@@ -57,7 +63,8 @@ double farthest(const MeshFile& from, const MeshFile& to) {
     double least = std::numeric_limits<double>::infinity();
     for (const InterfaceTriangle& t : to.triangles) {
       const Vec3 &a = to.points[t.v[0]], &b = to.points[t.v[1]], &c = to.points[t.v[2]];
-      const double dx = std::max({std::min({a.x, b.x, c.x}) - p.x, p.x - std::max({a.x, b.x, c.x}), 0.0}), dy = std::max({std::min({a.y, b.y, c.y}) - p.y, p.y - std::max({a.y, b.y, c.y}), 0.0});
+      const double dx = std::max({std::min({a.x, b.x, c.x}) - p.x, p.x - std::max({a.x, b.x, c.x}), 0.0}),
+                   dy = std::max({std::min({a.y, b.y, c.y}) - p.y, p.y - std::max({a.y, b.y, c.y}), 0.0});
       if (dx * dx + dy * dy >= least) continue;
       least = std::min(least, squared_distance(p, a, b, c));
       if (least < 1e-8) break;
@@ -108,7 +115,8 @@ class DrawnShapes : public ProgramTest {
     succeeds(raw);
     const MeshFile stitched = stackmesh::read_mesh(out("raw.vtp"));
     const double off = farthest(mesh_, stitched), chord = farthest(stitched, mesh_);
-    std::printf("%s: vertices within %.3f mm, drawn points within %.3f mm, %zu triangles\n", inputs[0].substr(inputs[0].rfind('/') + 1).c_str(), off, chord, mesh_.triangles.size());
+    std::printf("%s: vertices within %.3f mm, drawn points within %.3f mm, %zu triangles\n",
+                inputs[0].substr(inputs[0].rfind('/') + 1).c_str(), off, chord, mesh_.triangles.size());
     EXPECT_LT(off, place_mm) << inputs[0];
     EXPECT_LT(chord, chord_mm) << inputs[0];
     return r;
@@ -149,19 +157,23 @@ TEST_F(DrawnShapes, FilesWithManyPointsLieWhereTheyWereDrawn) {
 }
 
 TEST_F(DrawnShapes, PrismsKeepTheirVolumeAndPlace) {
-  const std::vector<std::pair<Outlines, double>> prisms = {{{box(-10, -10, 10, 10)}, 400},
-                                                                       {{Outline{{0, 0}, {30, 0}, {30, 8}, {8, 8}, {8, 30}, {0, 30}}}, 30 * 8 + 22 * 8},
-                                                                       {{box(0, 0, 40, 40), box(5, 5, 35, 35)}, 1600 - 900},
-                                                                       {{disc(0, 0, 15, 8)}, disc_area(15, 8)},
-                                                                       {{disc(0, 0, 15, 16)}, disc_area(15, 16)},
-                                                                       {{disc(0, 0, 15, 64)}, disc_area(15, 64)}};
+  const std::vector<std::pair<Outlines, double>> prisms = {
+      {{box(-10, -10, 10, 10)}, 400},
+      {{Outline{{0, 0}, {30, 0}, {30, 8}, {8, 8}, {8, 30}, {0, 30}}}, 30 * 8 + 22 * 8},
+      {{box(0, 0, 40, 40), box(5, 5, 35, 35)}, 1600 - 900},
+      {{disc(0, 0, 15, 8)}, disc_area(15, 8)},
+      {{disc(0, 0, 15, 16)}, disc_area(15, 16)},
+      {{disc(0, 0, 15, 64)}, disc_area(15, 64)}};
   int k = 0;
   for (const auto& [outlines, area] : prisms) {
-    const std::string file = drawn("prism" + std::to_string(k++) + ".cnt", 0, 3, 7, [&, o = &outlines](double) { return *o; });
-    // Sixteen corners of 22.5 degrees are no corners but a smooth outline: its surface lies between the polygon and the circle, or beside it by the chords.
+    const std::string file =
+        drawn("prism" + std::to_string(k++) + ".cnt", 0, 3, 7, [&, o = &outlines](double) { return *o; });
+    // Sixteen corners of 22.5 degrees are no corners but a smooth outline: its surface lies between the polygon and the
+    // circle, or beside it by the chords.
     const bool smooth = outlines[0].size() == 16;
     const double bulge = 15 * (1 - std::cos(M_PI / 16));
-    has(smooth ? in_place({file}, bulge, 2 * bulge) : in_place({file}), 1, area * 18, 0.005, static_cast<int>(outlines.size()) - 1);
+    has(smooth ? in_place({file}, bulge, 2 * bulge) : in_place({file}), 1, area * 18, 0.005,
+        static_cast<int>(outlines.size()) - 1);
     EXPECT_NEAR(heights(1)[0], 0, 1e-6) << k;
     EXPECT_NEAR(heights(1)[1], 18, 1e-6) << k;
   }
@@ -169,17 +181,23 @@ TEST_F(DrawnShapes, PrismsKeepTheirVolumeAndPlace) {
 
 TEST_F(DrawnShapes, ATorusAlongAndAcrossItsSectionsIsOneRing) {
   const double R = 20, r = 6;
-  const double beyond = 2 * (r * r * std::acos(5 / r) - 5 * std::sqrt(r * r - 25));  // of its cross-section, below and above the first and last cut
+  // of its cross-section, below and above the first and last cut
+  const double beyond = 2 * (r * r * std::acos(5 / r) - 5 * std::sqrt(r * r - 25));
   const auto lying = [&](double z) {
     const double w = std::sqrt(std::max(0.0, r * r - z * z));
     return Outlines{disc(0, 0, R + w, 96), disc(0, 0, R - w, 72)};
   };
-  has(surface({drawn("lying.cnt", -5, 1, 11, lying)}, {"--caps", "flat"}), 1, 2 * M_PI * R * (M_PI * r * r - beyond), 0.01, 1);
+  has(surface({drawn("lying.cnt", -5, 1, 11, lying)}, {"--caps", "flat"}), 1, 2 * M_PI * R * (M_PI * r * r - beyond),
+      0.01, 1);
   const auto standing = [&](double z) {
     const int n = 60;
     const double t0 = std::abs(z) > R ? std::sqrt(std::max(0.0, r * r - (std::abs(z) - R) * (std::abs(z) - R))) : r;
-    const auto outer = [&](double y) { return std::sqrt(std::max(0.0, std::pow(R + std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z)); };
-    const auto inner = [&](double y) { return std::sqrt(std::max(0.0, std::pow(R - std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z)); };
+    const auto outer = [&](double y) {
+      return std::sqrt(std::max(0.0, std::pow(R + std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z));
+    };
+    const auto inner = [&](double y) {
+      return std::sqrt(std::max(0.0, std::pow(R - std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z));
+    };
     Outlines all;
     if (std::abs(z) >= R - r) {
       Outline one;
@@ -199,9 +217,12 @@ TEST_F(DrawnShapes, ATorusAlongAndAcrossItsSectionsIsOneRing) {
 }
 
 TEST_F(DrawnShapes, WhatBranchesEndsOrOpensDoesSoOnce) {
-  const auto fork = [](double z) { return z < 9 ? Outlines{disc(0, 0, 12)} : Outlines{disc(-5 - 0.5 * z, 0, 6), disc(5 + 0.5 * z, 0, 6)}; };
+  const auto fork = [](double z) {
+    return z < 9 ? Outlines{disc(0, 0, 12)} : Outlines{disc(-5 - 0.5 * z, 0, 6), disc(5 + 0.5 * z, 0, 6)};
+  };
   const Json y = surface({drawn("fork.cnt", 0, 3, 9, fork)});
-  const double trunk = disc_area(12, 64) * 6, arms = 2 * disc_area(6, 64) * 15;  // and the gap of 3 mm between them holds from the one to the other
+  // and the gap of 3 mm between them holds from the one to the other
+  const double trunk = disc_area(12, 64) * 6, arms = 2 * disc_area(6, 64) * 15;
   has(y, 1, trunk + arms + 1.5 * (disc_area(12, 64) + 2 * disc_area(6, 64)), 0.1, 0);
   EXPECT_NEAR(heights(1)[0], 0, 0.01);
   // A cone that ends between sections, beside a rod that goes on.
@@ -215,8 +236,10 @@ TEST_F(DrawnShapes, WhatBranchesEndsOrOpensDoesSoOnce) {
   const auto opening = [](double z) {
     if (z < 9) return Outlines{disc(0, 0, 20), disc(0, 0, 12)};
     Outline o;
-    for (int i = 0; i <= 80; ++i) o.push_back({20 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 20 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
-    for (int i = 80; i >= 0; --i) o.push_back({12 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 12 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
+    for (int i = 0; i <= 80; ++i)
+      o.push_back({20 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 20 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
+    for (int i = 80; i >= 0; --i)
+      o.push_back({12 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 12 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
     return Outlines{o};
   };
   const double ring = M_PI * (400 - 144), c_part = ring * (1 - 0.8 / (2 * M_PI));
@@ -237,7 +260,8 @@ TEST_F(DrawnShapes, NestedStacksStayNested) {
     }
     std::vector<std::string> inputs;
     for (int d = 0; d < levels; ++d)
-      inputs.push_back(std::to_string(d + 1) + "=" + drawn("n" + std::to_string(d) + ".cnt", 0, gap, sections, [&](double z) {
+      inputs.push_back(std::to_string(d + 1) + "=" +
+                       drawn("n" + std::to_string(d) + ".cnt", 0, gap, sections, [&](double z) {
                          const auto& m = at[static_cast<std::size_t>(std::lround(z / gap))];
                          return Outlines{disc(m[0], m[1], 14 + wall * (levels - 1 - d), 72)};
                        }));
@@ -247,7 +271,8 @@ TEST_F(DrawnShapes, NestedStacksStayNested) {
       EXPECT_EQ(row(r, d).at("components"), 1) << seed << ' ' << d;
       EXPECT_EQ(row(r, d).at("closed"), true) << seed << ' ' << d;
     }
-    for (const InterfaceTriangle& t : mesh_.triangles) ASSERT_EQ(std::abs(t.below - t.above), 1) << "seed " << seed << ": " << t.below << " meets " << t.above;
+    for (const InterfaceTriangle& t : mesh_.triangles)
+      ASSERT_EQ(std::abs(t.below - t.above), 1) << "seed " << seed << ": " << t.below << " meets " << t.above;
   }
 }
 

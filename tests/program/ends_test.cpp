@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 class Ends : public ProgramTest {
  protected:
   const std::string input_ = testdata("border.nii.gz");
-  std::vector<std::string> to(const std::string& name) const { return {"mesh", input_, "-o", out(name), "--no-enhance"}; }
+  std::vector<std::string> to(const std::string& name) const {
+    return {"mesh", input_, "-o", out(name), "--no-enhance"};
+  }
 };
 
 std::vector<int> workers_of(int pid) {
@@ -27,7 +29,8 @@ std::vector<int> workers_of(int pid) {
   for (const auto& task : fs::directory_iterator("/proc/" + std::to_string(pid) + "/task")) {
     std::istringstream list(read_file(task.path().string() + "/children"));
     for (int child; list >> child;)
-      if (read_file("/proc/" + std::to_string(child) + "/cmdline").find("--tetgen-worker") != std::string::npos) found.push_back(child);
+      if (read_file("/proc/" + std::to_string(child) + "/cmdline").find("--tetgen-worker") != std::string::npos)
+        found.push_back(child);
   }
   return found;
 }
@@ -52,7 +55,7 @@ TEST_F(Ends, SignalsLeaveNothingBehind) {
 }
 
 TEST_F(Ends, WhatAKilledRunLeftGoesAtTheNextStart) {
-  std::ofstream(out("a.vtu.part999999999-0")) << "half";           // no such process
+  std::ofstream(out("a.vtu.part999999999-0")) << "half";  // no such process
   std::ofstream(out("b.stl.part999999999-3")) << "half";
   std::ofstream(out("a.vtu.part" + std::to_string(::getpid()) + "-0")) << "another run's";
   std::ofstream(out("a.vtu.parts")) << "the user's";
@@ -72,7 +75,8 @@ TEST_F(Ends, ModeAndLinksOfWhatIsReplacedAreKept) {
   ASSERT_EQ(::stat(out("a.vtu").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 07777, 0604u);
   for (const char* link : {"b.vtu", "dangling.vtu"}) EXPECT_TRUE(fs::is_symlink(out(link))) << link;
-  for (const char* file : {"a.vtu", "elsewhere/b.vtu", "elsewhere/new.vtu"}) EXPECT_GT(fs::file_size(out(file)), 10000u) << file;
+  for (const char* file : {"a.vtu", "elsewhere/b.vtu", "elsewhere/new.vtu"})
+    EXPECT_GT(fs::file_size(out(file)), 10000u) << file;
 }
 
 TEST_F(Ends, OutputsAreLookedAtBeforeTheInput) {
@@ -83,7 +87,8 @@ TEST_F(Ends, OutputsAreLookedAtBeforeTheInput) {
   there.folder = folder_ + "/out";
   fails(2, {"mesh", input, "-o", "a.vtu", "-o", "./a.vtu"}, {"one file", "a.vtu"}, {}, there);
   fails(2, {"mesh", input, "-o", out("a.vtu"), "--report", out("R.json"), "--names", out("R.json")}, {"one file"});
-  for (const char* name : {"hard.vtu", "soft.vtu"}) fails(2, {"mesh", input, "-o", in(name)}, {"would replace an input"});
+  for (const char* name : {"hard.vtu", "soft.vtu"})
+    fails(2, {"mesh", input, "-o", in(name)}, {"would replace an input"});
   const std::string contours = write("c.cnt", read_file(testdata("tube.cnt")));
   fails(2, {"contours", "3=" + contours, "-o", contours}, {"would replace an input"});
   fails(2, {"validate", write("m.json", "{}"), "--report", in("m.json")}, {"would replace an input"});
@@ -149,7 +154,8 @@ TEST_F(Ends, ABoundOnFileSizesIsAnErrorAndNoSignal) {
 }
 
 TEST_F(Ends, AWorkerThatIsKilledOnceCostsAWarningAndNothingElse) {
-  const std::vector<std::string> arguments = {"mesh", testdata("femur.nii.gz"), "--interpolate", "0", "-o", out("a.vtu")};
+  const std::vector<std::string> arguments = {"mesh",      testdata("femur.nii.gz"), "--interpolate", "0", "-o",
+                                              out("a.vtu")};
   succeeds(arguments);
   const std::string undisturbed = read_file(out("a.vtu"));
   int killed = 0;

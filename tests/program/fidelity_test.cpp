@@ -1,5 +1,5 @@
-// apps/make_fidelity.py on one small cell: labels made, both runs judged against the true shape beside windowed sinc, the rest
-// taken from the cache at the second go.
+// apps/make_fidelity.py on one small cell: labels made, both runs judged against the true shape beside windowed sinc,
+// the rest taken from the cache at the second go.
 #include <filesystem>
 #include <regex>
 
@@ -15,8 +15,10 @@ const std::string kTools = STACKMESH_SHARED_DATA "/../tools";
 class Fidelity : public ProgramTest {
  protected:
   Ended make(std::vector<std::string> more, const std::string& tools = kTools) const {
-    std::vector<std::string> command = {"/usr/bin/python3", STACKMESH_SOURCE_DIR "/apps/make_fidelity.py", "--program", STACKMESH_PROGRAM,
-                                        "--tools", tools, "--cache", out("cache")};
+    std::vector<std::string> command = {"/usr/bin/python3", STACKMESH_SOURCE_DIR "/apps/make_fidelity.py",
+                                        "--program",        STACKMESH_PROGRAM,
+                                        "--tools",          tools,
+                                        "--cache",          out("cache")};
     command.insert(command.end(), more.begin(), more.end());
     return run(command);
   }
@@ -29,8 +31,9 @@ TEST_F(Fidelity, OneCellIsMadeJudgedAndKept) {
   ASSERT_EQ(first.code, 0) << first.err;
   // | sphere | limits | mm / deg | above 20 | volume | triangles | peers; bold where a limit is missed
   const std::string figure = R"(\**([-+]?[0-9.,]+)\**)";
-  const std::regex edged(R"(\| sphere \| 0\.13 / 5\.8 \| )" + figure + " / " + figure + R"([^|]*\| )" + figure + R"( \| )" + figure + R"( \| )" + figure +
-                         R"( \| )" + figure + " / " + figure + R"( \| )" + figure + " / " + figure);
+  const std::regex edged(R"(\| sphere \| 0\.13 / 5\.8 \| )" + figure + " / " + figure + R"([^|]*\| )" + figure +
+                         R"( \| )" + figure + R"( \| )" + figure + R"( \| )" + figure + " / " + figure + R"( \| )" +
+                         figure + " / " + figure);
   std::smatch m;
   ASSERT_TRUE(std::regex_search(first.out, m, edged)) << first.out;
   const double mm = std::stod(m[1]), deg = std::stod(m[2]), volume = std::stod(m[4]);

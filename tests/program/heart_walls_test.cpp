@@ -16,7 +16,8 @@ using stackmesh::Vec3;
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto to = [&](const Vec3& q) { return dot(p - q, p - q); };
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
   if (d1 <= 0 && d2 <= 0) return to(a);
   if (d3 >= 0 && d4 <= d3) return to(b);
   if (d6 >= 0 && d5 <= d6) return to(c);
@@ -31,7 +32,8 @@ class HeartWalls : public ProgramTest {
  protected:
   /// Smallest distance between the two outlines in any section up to a height, mm.
   static double thinnest_drawn(const std::string& epi, const std::string& endo, double up_to) {
-    const stackmesh::LabelContours outer = stackmesh::read_contour_file(epi), inner = stackmesh::read_contour_file(endo);
+    const stackmesh::LabelContours outer = stackmesh::read_contour_file(epi),
+                                   inner = stackmesh::read_contour_file(endo);
     double least = std::numeric_limits<double>::infinity();
     const auto measure = [&](const stackmesh::ContourPolygon& from, const stackmesh::ContourPolygon& to) {
       for (const auto& v : from.points)
@@ -51,9 +53,11 @@ class HeartWalls : public ProgramTest {
 
   /// The wall between the labels' surfaces is nowhere thinner than half of the thinnest drawn one, up to a height.
   void is_kept(const std::string& heart, double up_to, const std::vector<std::string>& more = {}) {
-    const std::string epi = shared_data("heart_sax_sunnybrook/" + heart + "/epi_ED.cnt"), endo = shared_data("heart_sax_sunnybrook/" + heart + "/endo_ED.cnt");
+    const std::string epi = shared_data("heart_sax_sunnybrook/" + heart + "/epi_ED.cnt"),
+                      endo = shared_data("heart_sax_sunnybrook/" + heart + "/endo_ED.cnt");
     if (epi.empty() || endo.empty()) GTEST_SKIP() << "NOT TESTED: needs ../shared/data/heart_sax_sunnybrook";
-    std::vector<std::string> command = {"surface", "1=" + epi, "2=" + endo, "-o", out("a.vtp"), "--report", out("R.json")};
+    std::vector<std::string> command = {"surface",    "1=" + epi, "2=" + endo,  "-o",
+                                        out("a.vtp"), "--report", out("R.json")};
     command.insert(command.end(), more.begin(), more.end());
     succeeds(command);
     for (int label : {1, 2}) {
@@ -79,23 +83,32 @@ class HeartWalls : public ProgramTest {
       const Vec3& p = mesh.points[v];
       if (!inside[v] || p.z > up_to) continue;
       for (const auto& t : outside) {
-        const double away = std::max({std::min({t[0].z, t[1].z, t[2].z}) - p.z, p.z - std::max({t[0].z, t[1].z, t[2].z}), 0.0});
+        const double away =
+            std::max({std::min({t[0].z, t[1].z, t[2].z}) - p.z, p.z - std::max({t[0].z, t[1].z, t[2].z}), 0.0});
         if (away * away >= least) continue;
         if (const double d = squared_distance(p, t[0], t[1], t[2]); d < least) least = d, where = p;
       }
     }
     const double wall = std::sqrt(least), drawn = thinnest_drawn(epi, endo, up_to);
     RecordProperty("thinnest_mm", std::to_string(wall));
-    std::printf("%s: thinnest wall %.3f mm at (%.1f, %.1f, %.1f), drawn %.3f mm\n", heart.c_str(), wall, where.x, where.y, where.z, drawn);
+    std::printf("%s: thinnest wall %.3f mm at (%.1f, %.1f, %.1f), drawn %.3f mm\n", heart.c_str(), wall, where.x,
+                where.y, where.z, drawn);
     EXPECT_GT(drawn, 1) << "the contours touch";
     EXPECT_GE(wall, 0.5 * drawn) << where.x << ' ' << where.y << ' ' << where.z;
   }
 };
 
-// The topmost two contours run on each other along the dent of the outer one, which a warning names; slivers of wall between them hang on nothing.
-TEST_F(HeartWalls, OfTheFirstIsKeptBeneathWhereItsContoursOpenIt) { is_kept("SC-HF-I-1", -68.9, {"--min-piece", "50"}); }
-TEST_F(HeartWalls, OfTheSecondIsKept) { is_kept("SC-HF-I-2", 1e9); }
-TEST_F(HeartWalls, OfTheFourthIsKept) { is_kept("SC-HF-I-4", 1e9); }
+// The topmost two contours run on each other along the dent of the outer one, which a warning names; slivers of wall
+// between them hang on nothing.
+TEST_F(HeartWalls, OfTheFirstIsKeptBeneathWhereItsContoursOpenIt) {
+  is_kept("SC-HF-I-1", -68.9, {"--min-piece", "50"});
+}
+TEST_F(HeartWalls, OfTheSecondIsKept) {
+  is_kept("SC-HF-I-2", 1e9);
+}
+TEST_F(HeartWalls, OfTheFourthIsKept) {
+  is_kept("SC-HF-I-4", 1e9);
+}
 
 }  // namespace
 }  // namespace program

@@ -19,7 +19,8 @@ class HtmlReport : public ProgramTest {
 };
 
 TEST_F(HtmlReport, OpensOfflineInABrowserAndDoesWhatItShould) {
-  succeeds({"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
+  succeeds(
+      {"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
   EXPECT_LT(read_file(out("R.html")).size(), kMostBytes);
   opens(out("R.html"));
 }
@@ -47,9 +48,11 @@ TEST_F(HtmlReport, IsNamedAfterAllFilesOfItsInput) {
 }
 
 TEST_F(HtmlReport, ShowsTheSolverModelOfLabelsAndOfAGivenMesh) {
-  const std::string law = write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
+  const std::string law =
+      write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
       "labels": {"*": {"E_MPa": 1234, "poisson": 0.3}}, "load_case": {"fixed": [{"set": "cap_low"}], "loaded": [{"set": "cap_high", "force_N": [0, 0, -321]}]}})");
-  const std::vector<std::string> more = {"--parts", "A=1", "B=2", "C=3", "--materials", law, "--report", out("R.html"), "--report", out("R.json")};
+  const std::vector<std::string> more = {"--parts", "A=1",      "B=2",         "C=3",      "--materials",
+                                         law,       "--report", out("R.html"), "--report", out("R.json")};
   const auto run = [&](std::vector<std::string> args) {
     args.insert(args.end(), more.begin(), more.end());
     succeeds(args);
@@ -62,21 +65,27 @@ TEST_F(HtmlReport, ShowsTheSolverModelOfLabelsAndOfAGivenMesh) {
       const std::size_t row = section.find(">" + set.at("name").get<std::string>() + "</th>");
       ASSERT_NE(row, std::string::npos) << set;
       const std::string cells = section.substr(row, section.find("</tr>", row) - row);
-      EXPECT_NE(cells.find("data-v=\"" + std::to_string(set.at("nodes").get<int>()) + "\""), std::string::npos) << cells;
-      EXPECT_NE(cells.find("data-v=\"" + std::to_string(set.at("faces").get<int>()) + "\""), std::string::npos) << cells;
+      EXPECT_NE(cells.find("data-v=\"" + std::to_string(set.at("nodes").get<int>()) + "\""), std::string::npos)
+          << cells;
+      EXPECT_NE(cells.find("data-v=\"" + std::to_string(set.at("faces").get<int>()) + "\""), std::string::npos)
+          << cells;
     }
-    for (const char* text : {"A, B", "tied", "data-v=\"1234\"", "321) N"}) EXPECT_NE(section.find(text), std::string::npos) << text;
+    for (const char* text : {"A, B", "tied", "data-v=\"1234\"", "321) N"})
+      EXPECT_NE(section.find(text), std::string::npos) << text;
   };
   run({"fem", testdata("border.nii.gz"), "--edge-length", "6", "-o", out("a.vtu")});
-  run({"fem", out("a.vtu"), "-o", out("b.inp")});  // its parts have nodes of their own: they are joined, and split again
+  // its parts have nodes of their own: they are joined, and split again
+  run({"fem", out("a.vtu"), "-o", out("b.inp")});
   EXPECT_EQ(report().at("surface").at("self_intersections"), 0);
   EXPECT_EQ(report().at("fem").at("pairs").size(), 3u);
   opens(out("R.html"));
 }
 
 TEST_F(HtmlReport, ColoursTheSolverModelBySetLoadModulusAndStress) {
-  if (std::system("command -v ccx >/dev/null 2>&1") != 0) GTEST_SKIP() << "NOT TESTED: CalculiX (calculix-ccx) is not installed";
-  const std::string law = write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
+  if (std::system("command -v ccx >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "NOT TESTED: CalculiX (calculix-ccx) is not installed";
+  const std::string law =
+      write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa"},
       "labels": {"1": {"E_MPa": 1234, "poisson": 0.3}, "*": {"E_MPa": 100, "poisson": 0.3}},
       "load_case": {"fixed": [{"set": "cap_low"}], "loaded": [{"set": "cap_high", "force_N": [0, 0, -321]}]}})");
   const auto fem = [&](std::vector<std::string> input, std::vector<std::string> more) {
@@ -93,7 +102,8 @@ TEST_F(HtmlReport, ColoursTheSolverModelBySetLoadModulusAndStress) {
     const Ended browser = python("report_in_browser.py", {out("R.html")});
     if (browser.code == 77) return;  // NOT TESTED: no browser
     EXPECT_EQ(browser.code, 0) << browser.out << browser.err;
-    for (const char* colour : {"set", "acts", "modulus", "mises"}) EXPECT_NE(browser.out.find(std::string("ok     colours by ") + colour), std::string::npos) << browser.out;
+    for (const char* colour : {"set", "acts", "modulus", "mises"})
+      EXPECT_NE(browser.out.find(std::string("ok     colours by ") + colour), std::string::npos) << browser.out;
   };
   all_colours();
   // Of a given mesh, too; and a result of another mesh is refused.
@@ -102,13 +112,15 @@ TEST_F(HtmlReport, ColoursTheSolverModelBySetLoadModulusAndStress) {
   ASSERT_EQ(std::system(("cd '" + out("") + "' && OMP_NUM_THREADS=1 ccx -i a >ccx.log 2>&1").c_str()), 0);
   fem({in("m.vtu")}, {"--result", out("a.frd")});
   all_colours();
-  const Ended other = stackmesh({"fem", labels[0], "--edge-length", "9", "--materials", law, "-o", out("b.inp"), "--report", out("R.html"), "--result", out("a.frd")});
+  const Ended other = stackmesh({"fem", labels[0], "--edge-length", "9", "--materials", law, "-o", out("b.inp"),
+                                 "--report", out("R.html"), "--result", out("a.frd")});
   EXPECT_EQ(other.code, 3);
   EXPECT_NE(other.err.find("another mesh"), std::string::npos) << other.err;
 }
 
 TEST_F(HtmlReport, HoldsTheFiguresOfTheJson) {
-  succeeds({"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
+  succeeds(
+      {"mesh", testdata("heart4.nii.gz"), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
   const Json report = this->report();
   const std::string html = read_file(out("R.html"));
   for (const auto& label : report["labels"]) {
@@ -129,7 +141,8 @@ TEST_F(HtmlReport, HasNoPatientFields) {
   bytes.replace(14, 8, "MRN12345");         // db_name
   bytes.replace(328, 8, "Dr. Hyde");        // intent_name
   bytes.replace(228, 8, "ward7.nii");       // aux_file
-  succeeds({"mesh", write("labels.nii", bytes), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
+  succeeds(
+      {"mesh", write("labels.nii", bytes), "-o", out("a.vtu"), "--report", out("R.html"), "--report", out("R.json")});
   for (const char* file : {"R.html", "R.json"})
     for (const char* part : {"DOE^JANE", "JANE", "MRN12345", "Dr. Hyde", "ward7"})
       EXPECT_EQ(read_file(out(file)).find(part), std::string::npos) << file << " tells " << part;

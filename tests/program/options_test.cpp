@@ -17,7 +17,8 @@ class Options : public ProgramTest {
   /// The report of `mesh INPUT... OPTIONS...` on the stitched surface, whose figures are exact.
   Json mesh(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "mesh");
-    arguments.insert(arguments.end(), {"--no-enhance", "--interpolate", "0", "-o", out("a.vtu"), "--report", out("R.json")});
+    arguments.insert(arguments.end(),
+                     {"--no-enhance", "--interpolate", "0", "-o", out("a.vtu"), "--report", out("R.json")});
     succeeds(arguments);
     return report();
   }
@@ -48,8 +49,7 @@ TEST_F(Options, LabelsByNumberRangeAndName) {
 }
 
 TEST_F(Options, WhatIsNotChosenIsBackground) {
-  const Json all = mesh({border_, "--simplify", "0"}),
-             one = mesh({border_, "--simplify", "0", "--label", "2"});
+  const Json all = mesh({border_, "--simplify", "0"}), one = mesh({border_, "--simplify", "0", "--label", "2"});
   EXPECT_EQ(row(one, 2).at("input_volume_mm3"), row(all, 2).at("input_volume_mm3"));
   EXPECT_NEAR(row(one, 2).at("dice"), 1, 1e-12);
   EXPECT_LT(one.at("volume").at("tets"), all.at("volume").at("tets"));
@@ -58,9 +58,8 @@ TEST_F(Options, WhatIsNotChosenIsBackground) {
 TEST_F(Options, MergedLabelsAreOneNumberedAsTheSmallest) {
   const Json all = mesh({border_}), merged = mesh({border_, "--label", "3,2", "--merge"});
   ASSERT_EQ(numbers(merged), (Numbers{2}));
-  EXPECT_DOUBLE_EQ(
-      row(merged, 2).at("input_volume_mm3"),
-      row(all, 2).at("input_volume_mm3").get<double>() + row(all, 3).at("input_volume_mm3").get<double>());
+  EXPECT_DOUBLE_EQ(row(merged, 2).at("input_volume_mm3"),
+                   row(all, 2).at("input_volume_mm3").get<double>() + row(all, 3).at("input_volume_mm3").get<double>());
   EXPECT_EQ(row(merged, 2).at("components"), 1);
   EXPECT_NEAR(row(merged, 2).at("dice"), 1, 1e-6);
   EXPECT_EQ(merged.at("options").at("merge"), "on");
@@ -96,7 +95,8 @@ TEST_F(Options, CapsPerLabelAreChosenAndReported) {
     EXPECT_EQ(row(round, label).at("caps"), (Json{{"low", "round"}, {"high", "round"}}));
     // Either way an end holds what its slice stands for.
     EXPECT_NEAR(row(flat, label).at("surface_volume_mm3"), row(round, label).at("surface_volume_mm3"),
-                0.002 * row(flat, label).at("input_volume_mm3").get<double>()) << label;
+                0.002 * row(flat, label).at("input_volume_mm3").get<double>())
+        << label;
   }
   // The roof of a round end stands on added points, a flat end needs none.
   const auto added = [](const Json& r) { return r.at("stitched").at("added_points").get<int>(); };
@@ -115,8 +115,7 @@ TEST_F(Options, CapsByName) {
 }
 
 TEST_F(Options, TheAxisCanBeChosen) {
-  for (const auto& [axis, sections] :
-       {std::pair<const char*, int>{"x", 26}, {"y", 22}, {"z", 13}, {"auto", 13}}) {
+  for (const auto& [axis, sections] : {std::pair<const char*, int>{"x", 26}, {"y", 22}, {"z", 13}, {"auto", 13}}) {
     const Json r = mesh({border_, "--axis", axis, "--simplify", "0", "--band", "0"});
     EXPECT_EQ(r.at("input").at("axis"), std::string(axis) == "auto" ? "z" : axis);
     EXPECT_EQ(r.at("input").at("sections"), sections);
@@ -139,11 +138,13 @@ TEST_F(Options, SnapAndSimplifyChangeTheVertexCount) {
 }
 
 TEST_F(Options, VirtualSectionsGoBetweenContours) {
-  const std::vector<std::string> pair = {"1=" + testdata("two_labels/outer.cnt"), "2=" + testdata("two_labels/inner.cnt")};
+  const std::vector<std::string> pair = {"1=" + testdata("two_labels/outer.cnt"),
+                                         "2=" + testdata("two_labels/inner.cnt")};
   const auto with = [&](const std::string& number) {
     std::vector<std::string> arguments = {"mesh"};
     arguments.insert(arguments.end(), pair.begin(), pair.end());
-    arguments.insert(arguments.end(), {"--no-enhance", "--interpolate", number, "-o", out("a.vtu"), "--report", out("R.json")});
+    arguments.insert(arguments.end(),
+                     {"--no-enhance", "--interpolate", number, "-o", out("a.vtu"), "--report", out("R.json")});
     succeeds(arguments);
     return report();
   };
@@ -152,7 +153,10 @@ TEST_F(Options, VirtualSectionsGoBetweenContours) {
     EXPECT_EQ(r.at("input").at("sections"), 9);
     EXPECT_EQ(r.at("volume").at("closure"), "verified");
     EXPECT_EQ(r.at("stitched").at("self_intersections"), 0);
-    for (int label : {1, 2}) EXPECT_NEAR(row(r, label).at("tet_volume_mm3").get<double>() / row(none, label).at("tet_volume_mm3").get<double>(), 1, 0.03);
+    for (int label : {1, 2})
+      EXPECT_NEAR(
+          row(r, label).at("tet_volume_mm3").get<double>() / row(none, label).at("tet_volume_mm3").get<double>(), 1,
+          0.03);
   }
   EXPECT_GT(three.at("contours").at("vertices"), 2 * none.at("contours").at("vertices").get<double>());
   EXPECT_GT(chosen.at("contours").at("vertices"), none.at("contours").at("vertices"));
@@ -163,13 +167,13 @@ TEST_F(Options, TetrahedraCanBeRefined) {
              fine = mesh({testdata("tube.cnt"), "--max-volume", "0.5", "--radius-edge", "2"});
   EXPECT_GT(fine.at("volume").at("tets"), 2 * plain.at("volume").at("tets").get<double>());
   EXPECT_EQ(fine.at("volume").at("closure"), "verified");
-  EXPECT_NEAR(
-      row(fine, 1).at("tet_volume_mm3").get<double>() / row(plain, 1).at("tet_volume_mm3").get<double>(), 1,
-      1e-9);
+  EXPECT_NEAR(row(fine, 1).at("tet_volume_mm3").get<double>() / row(plain, 1).at("tet_volume_mm3").get<double>(), 1,
+              1e-9);
 }
 
 TEST_F(Options, TetrahedraOfOneLabelCanBeRefined) {
-  const Json plain = mesh({border_, "--band", "0"}), all = mesh({border_, "--band", "0", "--max-volume", "0.5"}), fine = mesh({border_, "--band", "0", "--max-volume", "1=0.5"});
+  const Json plain = mesh({border_, "--band", "0"}), all = mesh({border_, "--band", "0", "--max-volume", "0.5"}),
+             fine = mesh({border_, "--band", "0", "--max-volume", "1=0.5"});
   const auto tets = [](const Json& r, int label) { return row(r, label).at("tets").get<double>(); };
   EXPECT_GT(tets(fine, 1), 3 * tets(plain, 1));
   EXPECT_NEAR(tets(fine, 1) / tets(all, 1), 1, 0.05);
@@ -180,9 +184,9 @@ TEST_F(Options, TetrahedraOfOneLabelCanBeRefined) {
 TEST_F(Options, StrictTurnsALostDetailIntoExit4) {
   const Json r = mesh({testdata("noise.nii.gz")});
   const bool lost = r.at("warnings").dump().find("components") != std::string::npos;
-  for (const auto& more :
-       {std::vector<std::string>{}, {"--report", out("S.json")}}) {  // with a report or without
-    std::vector<std::string> arguments = {"mesh", testdata("noise.nii.gz"), "--strict", "--no-enhance", "--interpolate", "0", "-o", out("s.vtu")};
+  for (const auto& more : {std::vector<std::string>{}, {"--report", out("S.json")}}) {  // with a report or without
+    std::vector<std::string> arguments = {
+        "mesh", testdata("noise.nii.gz"), "--strict", "--no-enhance", "--interpolate", "0", "-o", out("s.vtu")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(stackmesh(arguments).code, lost ? 4 : 0);
   }
@@ -214,8 +218,8 @@ Off read_off(const std::string& path) {
 
 TEST_F(Options, RasNegatesXAndYAndNothingElse) {
   for (const char* space : {"lps", "ras"})
-    succeeds({"mesh", testdata("oblique.nii.gz"), "--space", space, "-o", out(std::string(space) + ".off"),
-              "-o", out(std::string(space) + ".ply"), "-o", out(std::string(space) + ".obj"), "-o",
+    succeeds({"mesh", testdata("oblique.nii.gz"), "--space", space, "-o", out(std::string(space) + ".off"), "-o",
+              out(std::string(space) + ".ply"), "-o", out(std::string(space) + ".obj"), "-o",
               out(std::string(space) + ".vtu"), "-o", out(std::string(space) + ".msh"), "-o",
               out(std::string(space) + ".inp"), "--report", out(std::string(space) + ".json")});
   const Off lps = read_off(out("lps.off")), ras = read_off(out("ras.off"));
@@ -235,8 +239,8 @@ TEST_F(Options, RasNegatesXAndYAndNothingElse) {
 }
 
 TEST_F(Options, PerLabelFilesAreClosedOutwardAndOfTheLabelsVolume) {
-  succeeds({"surface", testdata("oblique.nii.gz"), "--per-label", "-o", out("p.off"), "-o", out("p.stl"),
-            "--report", out("R.json")});
+  succeeds({"surface", testdata("oblique.nii.gz"), "--per-label", "-o", out("p.off"), "-o", out("p.stl"), "--report",
+            out("R.json")});
   EXPECT_EQ(written(), (Names{"R.json", "p_100.off", "p_100.stl", "p_300.off", "p_300.stl"}));
   for (int label : {100, 300}) {
     const Off off = read_off(out("p_" + std::to_string(label) + ".off"));
@@ -248,8 +252,8 @@ TEST_F(Options, PerLabelFilesAreClosedOutwardAndOfTheLabelsVolume) {
         edges[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
       }
       const auto &a = off.points[t[0]], &b = off.points[t[1]], &c = off.points[t[2]];
-      six += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-             a[2] * (b[0] * c[1] - b[1] * c[0]);
+      six +=
+          a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
     }
     for (const auto& [edge, sum] : edges)
       EXPECT_EQ(sum, 0) << "edge " << edge.first << " " << edge.second << " of label " << label;
@@ -275,8 +279,7 @@ TEST_F(Options, PathsWithSpacesAndInTheWorkingFolder) {
   const std::string input = write("a b/tube (1).cnt", read_file(testdata("tube.cnt")));
   Around around;
   around.folder = folder_ + "/out";
-  EXPECT_EQ(stackmesh({"mesh", "../in/a b/tube (1).cnt", "-o", "m e.vtu", "--report", "R.json"}, around).code,
-            0);
+  EXPECT_EQ(stackmesh({"mesh", "../in/a b/tube (1).cnt", "-o", "m e.vtu", "--report", "R.json"}, around).code, 0);
   EXPECT_EQ(written(), (Names{"R.json", "m e.vtu"}));
 }
 
@@ -289,8 +292,7 @@ TEST_F(Options, ProgressQuietAndVerbose) {
     return succeeds(arguments);
   };
   const Ended plain = run_with({"--progress", "plain"}), verbose = run_with({"--verbose"}),
-              quiet = run_with({"--quiet"}), none = run_with({"--progress", "none"}),
-              automatic = run_with({});
+              quiet = run_with({"--quiet"}), none = run_with({"--progress", "none"}), automatic = run_with({});
   for (const char* stage : {"read", "contours", "stitch", "volume", "validate", "write"}) {
     EXPECT_NE(plain.err.find(stage), std::string::npos) << plain.err;
     EXPECT_NE(verbose.err.find(stage), std::string::npos);
@@ -315,8 +317,8 @@ TEST_F(Options, InfoAsJson) {
     EXPECT_NEAR(std::hypot(axis[0].get<double>(), axis[1].get<double>(), axis[2].get<double>()), 1, 1e-6);
   ASSERT_EQ(j.at("labels").size(), 2u);
   EXPECT_EQ(j.at("labels")[0].at("label"), 100);
-  const double voxel = j.at("spacing_mm")[0].get<double>() * j.at("spacing_mm")[1].get<double>() *
-                       j.at("spacing_mm")[2].get<double>();
+  const double voxel =
+      j.at("spacing_mm")[0].get<double>() * j.at("spacing_mm")[1].get<double>() * j.at("spacing_mm")[2].get<double>();
   const Json r = mesh({testdata("oblique.nii.gz")});
   for (const Json& l : j.at("labels")) {
     EXPECT_NEAR(l.at("volume_mm3"), l.at("voxels").get<double>() * voxel, 1e-6);
@@ -340,8 +342,7 @@ TEST_F(Options, InfoAsText) {
 /// Height and enclosed area of each section of a .cnt file.
 std::vector<std::pair<double, double>> areas_of(const std::string& path) {
   std::string text;
-  for (char c : read_file(path))
-    text += c == '{' || c == '}' ? std::string(" ") + c + " " : std::string(1, c);
+  for (char c : read_file(path)) text += c == '{' || c == '}' ? std::string(" ") + c + " " : std::string(1, c);
   std::istringstream stream(text);
   std::string word;
   std::vector<std::pair<double, double>> sections;
@@ -374,8 +375,7 @@ TEST_F(Options, ContoursAsCntMeshAgainToTheSameAreas) {
     const Ended r = succeeds({"contours", testdata(input), "--band", "0", "-o", out("c.cnt")});
     EXPECT_NE(r.out.find("c_<label>.cnt"), std::string::npos) << r.out;
     std::vector<std::string> pairs;
-    for (int label : labels)
-      pairs.push_back(std::to_string(label) + "=" + out("c_" + std::to_string(label) + ".cnt"));
+    for (int label : labels) pairs.push_back(std::to_string(label) + "=" + out("c_" + std::to_string(label) + ".cnt"));
     std::vector<std::string> again = {"contours"};
     again.insert(again.end(), pairs.begin(), pairs.end());
     again.insert(again.end(), {"-o", out("d.cnt")});
@@ -405,8 +405,7 @@ TEST_F(Options, ContoursAsJsonHoldEveryLabelsPixelArea) {
   for (const Json& s : j.at("sections"))
     for (const Json& e : s.at("edges")) {
       const Json &a = s.at("points")[e[0].get<int>()], &b = s.at("points")[e[1].get<int>()];
-      const double part =
-          (a[0].get<double>() * b[1].get<double>() - a[1].get<double>() * b[0].get<double>()) / 2;
+      const double part = (a[0].get<double>() * b[1].get<double>() - a[1].get<double>() * b[0].get<double>()) / 2;
       area[e[2].get<int>()] += part;
       area[e[3].get<int>()] -= part;
     }
@@ -426,8 +425,7 @@ TEST_F(Options, ContoursAsSvg) {
 }
 
 TEST_F(Options, RawSurfaceIsTheStitchedOne) {
-  succeeds(
-      {"surface", border_, "--raw", "--interpolate", "0", "-o", out("a.off"), "--report", out("R.json")});
+  succeeds({"surface", border_, "--raw", "--interpolate", "0", "-o", out("a.off"), "--report", out("R.json")});
   const Json r = report();
   EXPECT_EQ(r.at("surface").at("level"), "stitched");
   EXPECT_EQ(r.at("surface").at("triangles"), r.at("stitched").at("triangles"));
@@ -438,22 +436,26 @@ TEST_F(Options, RawSurfaceIsTheStitchedOne) {
 }  // namespace
 TEST_F(Options, OrderTwoWritesTenNodeTetsThatOthersRead) {
   const std::string input = testdata("border.nii.gz");
-  succeeds({"mesh", input, "--no-enhance", "-o", out("a.vtu"), "-o", out("a.msh"), "-o", out("a.inp"), "-o", out("a.vtk"), "-o", out("a.vtp"),
-            "--order", "2", "--report", out("R.json")});
+  succeeds({"mesh", input, "--no-enhance", "-o", out("a.vtu"), "-o", out("a.msh"), "-o", out("a.inp"), "-o",
+            out("a.vtk"), "-o", out("a.vtp"), "--order", "2", "--report", out("R.json")});
   const Json r = report();
   EXPECT_EQ(r["volume"]["order"], 2);
   EXPECT_EQ(r["volume"]["inverted"], 0);
   EXPECT_EQ(r["volume"]["closure"], "verified");
-  const program::Ended read = python("readback.py", {"--report", out("R.json"), out("a.vtu"), out("a.msh"), out("a.inp"), out("a.vtk"), out("a.vtp")});
+  const program::Ended read = python(
+      "readback.py", {"--report", out("R.json"), out("a.vtu"), out("a.msh"), out("a.inp"), out("a.vtk"), out("a.vtp")});
   if (read.code == 77 || read.code == 127) GTEST_SKIP() << "NOT TESTED: needs python3-vtk9 and python3-meshio";
   EXPECT_EQ(read.code, 0) << read.out;
 }
 
 TEST_F(Options, TenMillionTetrahedraAreAskedAbout) {
-  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--max-volume", "1e-6"}, {"million tetrahedra", "--yes"});
+  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--max-volume", "1e-6"},
+        {"million tetrahedra", "--yes"});
   // An edge length is refused before the surface is made of it.
-  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--edge-length", "0.1"}, {"million tetrahedra", "--yes"});
-  fails(2, {"fem", testdata("border.nii.gz"), "-o", out("a.inp"), "--edge-length", "0.1"}, {"million tetrahedra", "--yes"});
+  fails(2, {"mesh", testdata("border.nii.gz"), "-o", out("a.vtu"), "--edge-length", "0.1"},
+        {"million tetrahedra", "--yes"});
+  fails(2, {"fem", testdata("border.nii.gz"), "-o", out("a.inp"), "--edge-length", "0.1"},
+        {"million tetrahedra", "--yes"});
 }
 
 TEST_F(Options, OrderTwoIsRefusedForMedit) {

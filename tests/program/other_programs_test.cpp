@@ -22,21 +22,21 @@ class OtherPrograms : public ProgramTest {
     arguments.insert(arguments.end(), {"--report", out("R.json")});
     succeeds(arguments);
     const Ended r = python("readback.py", check);
-    if (unavailable(r))
-      GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
+    if (unavailable(r)) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-vtk9 and python3-meshio";
     EXPECT_EQ(r.code, 0) << r.out << r.err;
     EXPECT_EQ(r.out.find("MISMATCH"), std::string::npos) << r.out;
   }
   /// Meshes to .vtu without enhancement and compares with the volume as nibabel reads it.
   void lands_on(const std::string& input, const std::vector<std::string>& options, bool exact) const {
-    std::vector<std::string> arguments = {"mesh", input, "-o", out("m.vtu"), "--report", out("R.json"), "--no-enhance", "--interpolate", "0", "--band", "0"};
+    std::vector<std::string> arguments = {
+        "mesh",         input,           "-o", out("m.vtu"), "--report", out("R.json"),
+        "--no-enhance", "--interpolate", "0",  "--band",     "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     succeeds(arguments);
     std::vector<std::string> check = {out("R.json"), out("m.vtu"), input};
     if (exact) check.push_back("--exact");
     const Ended r = python("against_labels.py", check);
-    if (unavailable(r))
-      GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-nibabel and python3-vtk9";
+    if (unavailable(r)) GTEST_SKIP() << "NOT TESTED: needs /usr/bin/python3 with python3-nibabel and python3-vtk9";
     EXPECT_EQ(r.code, 0) << r.out << r.err;
     EXPECT_EQ(r.out.find("DIFFERS"), std::string::npos) << r.out;
     EXPECT_NE(r.out.find("label "), std::string::npos) << r.out;
@@ -70,8 +70,7 @@ TEST_F(OtherPrograms, ReadBackARealSpinalCord) {
 }
 
 TEST_F(OtherPrograms, GmshFindsTheReportsCountsWithoutAComplaint) {
-  if (run({"/bin/sh", "-c", "command -v gmsh"}).code != 0)
-    GTEST_SKIP() << "NOT TESTED: gmsh is not installed";
+  if (run({"/bin/sh", "-c", "command -v gmsh"}).code != 0) GTEST_SKIP() << "NOT TESTED: gmsh is not installed";
   std::string input = shared_data("ventricles_mri_itksnap/MRIcrop-seg.nii.gz");
   if (input.empty()) input = testdata("heart4.nii.gz");
   succeeds({"mesh", input, "-o", out("4.msh"), "--report", out("R.json")});
@@ -85,9 +84,7 @@ TEST_F(OtherPrograms, GmshFindsTheReportsCountsWithoutAComplaint) {
     EXPECT_EQ(gmsh.code, 0);
     const std::string said = gmsh.out + gmsh.err;
     EXPECT_NE(said.find(text(r["volume"]["nodes"], nullptr) + " nodes"), std::string::npos) << said;
-    EXPECT_NE(said.find(text(r["volume"]["tets"], r["surface"]["triangles"]) + " elements"),
-              std::string::npos)
-        << said;
+    EXPECT_NE(said.find(text(r["volume"]["tets"], r["surface"]["triangles"]) + " elements"), std::string::npos) << said;
     EXPECT_EQ(said.find("Error"), std::string::npos) << said;
     EXPECT_EQ(said.find("Warning"), std::string::npos) << said;
   }
@@ -144,11 +141,11 @@ class Judge : public ProgramTest {
     const std::string script = STACKMESH_SHARED_DATA "/../tools/judge_mesh.py";
     if (input.empty() || read_file(script).empty())
       GTEST_SKIP() << "NOT TESTED: the shared data or their judge are not here";
-    succeeds({"mesh", input, "--as-stored", "-o", out("m.vtu"), "--report", out("R.json")});  // the judge counts stored voxels
+    // the judge counts stored voxels
+    succeeds({"mesh", input, "--as-stored", "-o", out("m.vtu"), "--report", out("R.json")});
     const Ended r = run({"/usr/bin/python3", script, out("m.vtu"), input, "--label", std::to_string(label)});
     if (unavailable(r) || r.err.find("ModuleNotFoundError") != std::string::npos)
-      GTEST_SKIP()
-          << "NOT TESTED: the judge needs python3-vtk9, python3-nibabel, python3-scipy, python3-meshio";
+      GTEST_SKIP() << "NOT TESTED: the judge needs python3-vtk9, python3-nibabel, python3-scipy, python3-meshio";
     ASSERT_EQ(r.code, 0) << r.err;
     const Json judged = Json::parse(r.out), told = report(), &l = row(told, label);
     const Json &surface = judged.at("surface"), &fidelity = judged.at("fidelity");
@@ -157,10 +154,8 @@ class Judge : public ProgramTest {
     EXPECT_EQ(judged.at("tet").at("nodes"), told.at("volume").at("nodes"));
     EXPECT_EQ(judged.at("tet").at("inverted"), 0);
     EXPECT_EQ(judged.at("tet").at("labels").at(std::to_string(label)), l.at("tets"));
-    EXPECT_NEAR(judged.at("tet").at("dihedral_min"), told.at("volume").at("dihedral_min_deg").get<double>(),
-                1e-4);
-    EXPECT_NEAR(judged.at("tet").at("dihedral_max"), told.at("volume").at("dihedral_max_deg").get<double>(),
-                1e-4);
+    EXPECT_NEAR(judged.at("tet").at("dihedral_min"), told.at("volume").at("dihedral_min_deg").get<double>(), 1e-4);
+    EXPECT_NEAR(judged.at("tet").at("dihedral_max"), told.at("volume").at("dihedral_max_deg").get<double>(), 1e-4);
     EXPECT_EQ(surface.at("closed"), true);
     EXPECT_EQ(surface.at("unbalanced_edges"), 0);
     EXPECT_EQ(surface.at("euler"), l.at("euler"));
@@ -177,12 +172,9 @@ class Judge : public ProgramTest {
     // Its voxel faces include those across the stacking axis, which we leave out: only a bound. Its way back
     // goes to the centres of voxel faces, which lie no nearer than the faces. (The means of the same faces
     // are compared by against_labels.py.)
-    EXPECT_GE(fidelity.at("voxel_to_mesh_max").get<double>() * 1.05,
-              l.at("distance_mm").at("max").get<double>());
-    EXPECT_GE(fidelity.at("voxel_to_mesh_mean").get<double>() * 1.05,
-              l.at("distance_mm").at("mean").get<double>());
-    EXPECT_GE(fidelity.at("mesh_to_voxel_mean").get<double>(),
-              l.at("reverse_distance_mm").at("mean").get<double>());
+    EXPECT_GE(fidelity.at("voxel_to_mesh_max").get<double>() * 1.05, l.at("distance_mm").at("max").get<double>());
+    EXPECT_GE(fidelity.at("voxel_to_mesh_mean").get<double>() * 1.05, l.at("distance_mm").at("mean").get<double>());
+    EXPECT_GE(fidelity.at("mesh_to_voxel_mean").get<double>(), l.at("reverse_distance_mm").at("mean").get<double>());
     EXPECT_GE(fidelity.at("mesh_to_voxel_max").get<double>() * 1.05,
               l.at("reverse_distance_mm").at("max").get<double>());
   }

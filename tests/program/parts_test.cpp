@@ -17,13 +17,16 @@ class Parts : public ProgramTest {
     around.in_child = [&] { return ::setenv("STACKMESH_PARTS", out("parts").c_str(), 1) == 0; };
     return stackmesh(arguments, around);
   }
-  std::vector<std::string> to(const std::string& name) const { return {"mesh", testdata("border.nii.gz"), "-o", out(name), "--no-enhance"}; }
+  std::vector<std::string> to(const std::string& name) const {
+    return {"mesh", testdata("border.nii.gz"), "-o", out(name), "--no-enhance"};
+  }
   void refused(const std::string& why) const {
     for (const char* name : {"a.exo", "a.med"}) {
       const Ended r = with_parts(to(name));
       EXPECT_EQ(r.code, 4) << r.err;
       EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-      for (const std::string& part : {why, std::string("stackmesh-hdf5.so"), std::string("STACKMESH_PARTS")}) EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+      for (const std::string& part : {why, std::string("stackmesh-hdf5.so"), std::string("STACKMESH_PARTS")})
+        EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
     }
   }
 };

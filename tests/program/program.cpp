@@ -67,8 +67,7 @@ Ended run(const std::vector<std::string>& command, const Around& around) {
   int status = 0;
   if (around.while_running)
     while (::waitpid(pid, &status, WNOHANG) == 0) around.while_running(pid);
-  else
-    ::waitpid(pid, &status, 0);
+  else ::waitpid(pid, &status, 0);
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = read_file(out);
   result.err = read_file(err);
@@ -121,8 +120,7 @@ std::string ProgramTest::write(const std::string& name, const std::string& bytes
 
 std::vector<std::string> ProgramTest::written() const {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder_ + "/out"))
-    names.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder_ + "/out")) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -147,9 +145,8 @@ Ended ProgramTest::succeeds(const std::vector<std::string>& arguments) {
   return r;
 }
 
-void ProgramTest::fails(int code, const std::vector<std::string>& arguments,
-                        const std::vector<std::string>& parts, const std::vector<std::string>& left,
-                        const Around& around) const {
+void ProgramTest::fails(int code, const std::vector<std::string>& arguments, const std::vector<std::string>& parts,
+                        const std::vector<std::string>& left, const Around& around) const {
   std::string command = "stackmesh";
   for (const std::string& a : arguments) command += " " + a;
   SCOPED_TRACE(command);

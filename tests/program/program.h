@@ -57,8 +57,7 @@ class ProgramTest : public ::testing::Test {
   void fails(int code, const std::vector<std::string>& arguments, const std::vector<std::string>& parts,
              const std::vector<std::string>& left = {}, const Around& around = {}) const;
   /// `fails`, for `mesh INPUT... -o out/a.vtu`, with exit code 3 and the input's path in the message.
-  void refuses(const std::string& input, std::vector<std::string> parts,
-               std::vector<std::string> more = {}) const;
+  void refuses(const std::string& input, std::vector<std::string> parts, std::vector<std::string> more = {}) const;
 
   std::string folder_;
 };

@@ -9,8 +9,7 @@ class SameBytes : public ProgramTest, public ::testing::WithParamInterface<const
   void write_all(const std::string& name, const std::string& threads) const {
     const std::string input = testdata(GetParam());
     std::vector<std::string> volume = {"mesh", input, "--threads", threads},
-                             msh2 = {"mesh",   input, "--threads",         threads,
-                                     "--msh2", "-o",  out(name + "_2.msh")},
+                             msh2 = {"mesh", input, "--threads", threads, "--msh2", "-o", out(name + "_2.msh")},
                              surfaces = {"surface", input, "--threads", threads, "--per-label"};
     for (const char* ending : {"vtu", "msh", "inp", "feb", "bdf", "vtk", "mesh", "stl", "ply", "obj", "off", "vtp"})
       volume.insert(volume.end(), {"-o", out(name + "." + ending)});
@@ -42,9 +41,7 @@ TEST_P(SameBytes, OneThreadTwoThreadsAndAgain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Testdata, SameBytes, ::testing::Values("heart4.nii.gz", "noise.nii.gz"),
-                         [](const auto& p) {
-                           return std::string(p.param).substr(0, std::string(p.param).find('.'));
-                         });
+                         [](const auto& p) { return std::string(p.param).substr(0, std::string(p.param).find('.')); });
 
 }  // namespace
 }  // namespace program

@@ -21,23 +21,9 @@ std::ostream& operator<<(std::ostream& stream, const Sample& s) {
 
 const std::vector<Sample> samples = {
     {"femur", {"{}/femur.nii.gz"}, {{1, ""}, {2, ""}}, true, "nifti", "z", "lps", 115},
-    {"heart4",
-     {"{}/heart4.nii.gz"},
-     {{1, ""}, {2, ""}, {3, ""}, {4, ""}, {5, ""}},
-     true,
-     "nifti",
-     "z",
-     "lps",
-     18},
+    {"heart4", {"{}/heart4.nii.gz"}, {{1, ""}, {2, ""}, {3, ""}, {4, ""}, {5, ""}}, true, "nifti", "z", "lps", 18},
     {"vessel", {"{}/vessel.nii.gz"}, {{1, ""}}, true, "nifti", "z", "lps", 46},
-    {"shells",
-     {"{}/shells.nii.gz"},
-     {{3, ""}, {11, ""}, {200, ""}, {517, ""}},
-     true,
-     "nifti",
-     "z",
-     "lps",
-     42},
+    {"shells", {"{}/shells.nii.gz"}, {{3, ""}, {11, ""}, {200, ""}, {517, ""}}, true, "nifti", "z", "lps", 42},
     {"noise", {"{}/noise.nii.gz"}, {{1, ""}, {2, ""}, {3, ""}}, true, "nifti", "z", "lps", 9},
     {"border", {"{}/border.nii.gz"}, {{1, ""}, {2, ""}, {3, ""}}, true, "nifti", "z", "lps", 13},
     {"oblique", {"{}/oblique.nii.gz"}, {{100, ""}, {300, ""}}, true, "nifti", "z", "lps", 24},
@@ -81,8 +67,7 @@ class Testdata : public ProgramTest, public ::testing::WithParamInterface<Sample
   std::vector<std::string> mesh(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {"mesh"};
     for (std::string word : GetParam().input) {
-      if (const std::size_t at = word.find("{}"); at != std::string::npos)
-        word.replace(at, 2, STACKMESH_TESTDATA);
+      if (const std::size_t at = word.find("{}"); at != std::string::npos) word.replace(at, 2, STACKMESH_TESTDATA);
       arguments.push_back(word);
     }
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -147,21 +132,22 @@ TEST_P(Testdata, MeshesToEveryFormatInOneRun) {
   std::vector<std::string> more = to_every_format();
   more.insert(more.end(), {"--report", out("R.json")});
   const Ended r = succeeds(mesh(more));
-  EXPECT_EQ(written(), (std::vector<std::string>{"R.json", "m.bdf", "m.feb", "m.inp", "m.mesh", "m.msh", "m.obj", "m.off",
-                                                 "m.ply", "m.stl", "m.vtk", "m.vtp", "m.vtu"}));
+  EXPECT_EQ(written(), (std::vector<std::string>{"R.json", "m.bdf", "m.feb", "m.inp", "m.mesh", "m.msh", "m.obj",
+                                                 "m.off", "m.ply", "m.stl", "m.vtk", "m.vtp", "m.vtu"}));
   check(report());
   // In a pipe: results on stdout, on stderr nothing but warnings, which are those of the report.
   EXPECT_EQ(r.warnings().size(), lines_of(r.err).size()) << r.err;
   EXPECT_EQ(Json(r.warnings()), report().at("warnings"));
   EXPECT_NE(r.out.find("closure verified"), std::string::npos);
   for (const std::string& line : lines_of(r.out))
-    EXPECT_TRUE(line.rfind("input ", 0) == 0 || line.rfind("surface ", 0) == 0 ||
-                line.rfind("volume ", 0) == 0 || line.rfind("written ", 0) == 0)
+    EXPECT_TRUE(line.rfind("input ", 0) == 0 || line.rfind("surface ", 0) == 0 || line.rfind("volume ", 0) == 0 ||
+                line.rfind("written ", 0) == 0)
         << line;
 }
 
 TEST_P(Testdata, DirectStitchKeepsEveryCrackAndFillsExactly) {
-  std::vector<std::string> options = {"--simplify", "0", "--no-enhance", "--caps", "flat", "--interpolate", "0", "-o", out("m.vtu"), "--report", out("R.json")};
+  std::vector<std::string> options = {"--simplify", "0",  "--no-enhance", "--caps",   "flat",       "--interpolate",
+                                      "0",          "-o", out("m.vtu"),   "--report", out("R.json")};
   if (GetParam().grid) options.insert(options.end(), {"--band", "0"});
   succeeds(mesh(options));
   const Json r = report();
@@ -175,8 +161,7 @@ TEST_P(Testdata, DirectStitchKeepsEveryCrackAndFillsExactly) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Testdata, ::testing::ValuesIn(samples),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Every, Testdata, ::testing::ValuesIn(samples), [](const auto& p) { return p.param.name; });
 
 // ---- the fields of the report ----
 
@@ -201,8 +186,7 @@ void expect_fields(const Json& object, const std::vector<std::pair<std::string, 
                       : v.is_null()           ? '0'
                       : v.is_array()          ? 'a'
                                               : 'o';
-    const bool fits =
-        types.find(type) != std::string::npos || (type == 'i' && types.find('n') != std::string::npos);
+    const bool fits = types.find(type) != std::string::npos || (type == 'i' && types.find('n') != std::string::npos);
     EXPECT_TRUE(fits) << name << " is " << v.dump() << ", which is none of '" << types << "'";
   }
 }
@@ -239,8 +223,7 @@ void expect_report(const Json& r, bool grid, bool filled) {
     for (const Json& v : r.at("input").at("dimensions")) EXPECT_TRUE(v.is_number_integer());
     for (const Json& v : r.at("input").at("spacing_mm")) EXPECT_TRUE(v.is_number());
   }
-  const std::set<std::string> known = {"read",   "contours", "stitch", "enhance",
-                                       "volume", "validate", "write"};
+  const std::set<std::string> known = {"read", "contours", "stitch", "enhance", "volume", "validate", "write"};
   std::set<std::string> stages;
   for (const Json& s : r.at("stages")) {
     expect_fields(s, {{"name", "s"}, {"wall_s", "n"}, {"cpu_s", "n"}}, "stages");
@@ -253,13 +236,10 @@ void expect_report(const Json& r, bool grid, bool filled) {
   EXPECT_GT(r.at("peak_rss_mb"), 10);
   EXPECT_LT(r.at("peak_rss_mb"), 2000);
   expect_fields(r.at("contours"), {{"loops", "i"}, {"vertices_traced", "i"}, {"vertices", "i"}}, "contours");
-  expect_fields(r.at("stitched"),
-                {{"vertices", "i"},
-                 {"triangles", "i"},
-                 {"open_edges", "i"},
-                 {"self_intersections", "i"},
-                 {"added_points", "i"}},
-                "stitched");
+  expect_fields(
+      r.at("stitched"),
+      {{"vertices", "i"}, {"triangles", "i"}, {"open_edges", "i"}, {"self_intersections", "i"}, {"added_points", "i"}},
+      "stitched");
   expect_fields(r.at("surface"),
                 {{"level", "s"},
                  {"vertices", "i"},
@@ -312,7 +292,9 @@ void expect_report(const Json& r, bool grid, bool filled) {
                    {"reverse_distance_mm", grid ? "o" : "0"},
                    {"caps", "o"}},
                   "labels");
-    if (grid) expect_fields(l.at("band_distance_mm"), {{"mean", "n"}, {"max", "n"}, {"outside_share", "n"}}, "band_distance_mm");
+    if (grid)
+      expect_fields(l.at("band_distance_mm"), {{"mean", "n"}, {"max", "n"}, {"outside_share", "n"}},
+                    "band_distance_mm");
     if (grid)
       for (const char* d : {"distance_mm", "reverse_distance_mm"}) {
         expect_fields(l.at(d), {{"mean", "n"}, {"p95", "n"}, {"max", "n"}}, d);
@@ -327,8 +309,8 @@ void expect_report(const Json& r, bool grid, bool filled) {
 class Report : public ProgramTest {};
 
 TEST_F(Report, HasTheFieldsOfTheContractForAVolume) {
-  succeeds({"mesh", testdata("oblique.nii.gz"), "-o", out("a.vtu"), "--report", out("R.json"), "--report",
-            out("S.json")});
+  succeeds(
+      {"mesh", testdata("oblique.nii.gz"), "-o", out("a.vtu"), "--report", out("R.json"), "--report", out("S.json")});
   const Json r = report();
   expect_report(r, true, true);
   EXPECT_EQ(r.at("command"), "mesh");
@@ -352,10 +334,8 @@ TEST_F(Report, HasTheSameFieldsForContours) {
 }
 
 TEST_F(Report, HasTheSameFieldsAfterAFailure) {
-  fails(
-      4,
-      {"mesh", testdata("femur.nii.gz"), "-o", out("a.vtu"), "--report", out("R.json"), "--timeout", "0.01"},
-      {"femur"}, {"R.json"});
+  fails(4, {"mesh", testdata("femur.nii.gz"), "-o", out("a.vtu"), "--report", out("R.json"), "--timeout", "0.01"},
+        {"femur"}, {"R.json"});
   expect_report(report(), true, false);
   EXPECT_EQ(report().at("volume").at("closure"), "failed");
 }

@@ -101,8 +101,7 @@ TEST_F(Usage, ASurfaceIsNoVolume) {
 TEST_F(Usage, RasNeedsAnatomy) {
   fails(2, {"mesh", testdata("slices_png"), "--spacing", "1,1,2", "--space", "ras", "-o", out("a.vtu")},
         {"--space ras", "slices_png"});
-  fails(2, {"surface", testdata("tube.cnt"), "--space", "ras", "-o", out("a.stl")},
-        {"--space ras", "tube.cnt"});
+  fails(2, {"surface", testdata("tube.cnt"), "--space", "ras", "-o", out("a.stl")}, {"--space ras", "tube.cnt"});
 }
 
 TEST_F(Usage, MoreThanOneVolumeAndContoursAlongAnotherAxis) {
@@ -119,23 +118,22 @@ struct Help {
 };
 
 const std::vector<std::string> both = {
-    "INPUT",         "--spacing",   "--output",      "--report",   "--label",
-    "--merge",       "--deviation", "--edge-length", "--edge-min", "--edge-max",
-    "--interpolate", "--gradation", "--simplify", "--band", "--as-stored", "--snap",     "--smooth",
-    "--no-enhance",  "--caps",      "--axis",        "--space",    "--per-label",
-    "--strict",      "--threads",   "--progress",    "--quiet",    "--verbose"};
+    "INPUT",         "--spacing",  "--output",   "--report",      "--label",     "--merge",    "--deviation",
+    "--edge-length", "--edge-min", "--edge-max", "--interpolate", "--gradation", "--simplify", "--band",
+    "--as-stored",   "--snap",     "--smooth",   "--no-enhance",  "--caps",      "--axis",     "--space",
+    "--per-label",   "--strict",   "--threads",  "--progress",    "--quiet",     "--verbose"};
 
 TEST_F(Usage, HelpNamesEveryOption) {
   std::vector<std::string> mesh = both, surface = both;
   mesh.insert(mesh.end(),
-              {"--target-tets", "--max-volume", "--radius-edge", "--dihedral", "--order", "--timeout",
-               "--msh2", ".vtu", ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh", ".stl", ".ply", ".obj", ".off", ".vtp"});
+              {"--target-tets", "--max-volume", "--radius-edge", "--dihedral", "--order", "--timeout", "--msh2", ".vtu",
+               ".msh", ".inp", ".feb", ".bdf", ".vtk", ".mesh", ".stl", ".ply", ".obj", ".off", ".vtp"});
   surface.insert(surface.end(), {"--raw", ".stl", ".ply", ".obj", ".off", ".vtp"});
-  for (const Help& help : {Help{"mesh", mesh}, Help{"surface", surface},
-                           Help{"contours",
-                                {"INPUT", "--output", ".json", ".svg", ".cnt", "--label", "--merge",
-                                 "--simplify", "--axis", "--spacing"}},
-                           Help{"info", {"INPUT", "--json", "--spacing"}}}) {
+  for (const Help& help :
+       {Help{"mesh", mesh}, Help{"surface", surface},
+        Help{"contours",
+             {"INPUT", "--output", ".json", ".svg", ".cnt", "--label", "--merge", "--simplify", "--axis", "--spacing"}},
+        Help{"info", {"INPUT", "--json", "--spacing"}}}) {
     const Ended r = succeeds({help.command, "--help"});
     EXPECT_EQ(r.err, "");
     EXPECT_NE(r.out.find(std::string("stackmesh ") + help.command), std::string::npos);
@@ -147,8 +145,8 @@ TEST_F(Usage, HelpNamesEveryOption) {
 TEST_F(Usage, HelpTellsTheDefaults) {
   const std::string help = succeeds({"mesh", "--help"}).out;
   for (const char* text :
-       {"--band FLOAT=0.5", "--gradation FLOAT=1.3", "--snap FLOAT=0", "--caps TEXT=auto",
-        "--axis TEXT=auto", "--space TEXT=lps", "--interpolate TEXT=auto", "at most 150,000", "=600", "=5"})
+       {"--band FLOAT=0.5", "--gradation FLOAT=1.3", "--snap FLOAT=0", "--caps TEXT=auto", "--axis TEXT=auto",
+        "--space TEXT=lps", "--interpolate TEXT=auto", "at most 150,000", "=600", "=5"})
     EXPECT_NE(help.find(text), std::string::npos) << text << " is not in: " << help;
 }
 

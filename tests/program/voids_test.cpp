@@ -14,12 +14,19 @@ class Voids : public ProgramTest {
     std::ostringstream text;
     text << "S " << to - from + 1 << "\n";
     for (int k = from; k <= to; ++k)
-      text << "v 4 z " << 5 * k << "\n{\n" << -half << ' ' << -half << "\n" << half << ' ' << -half << "\n" << half << ' ' << half << "\n" << -half << ' ' << half << "\n}\n";
+      text << "v 4 z " << 5 * k << "\n{\n"
+           << -half << ' ' << -half << "\n"
+           << half << ' ' << -half << "\n"
+           << half << ' ' << half << "\n"
+           << -half << ' ' << half << "\n}\n";
     return write(name, text.str());
   }
   /// A block of 40 x 40 x 30 mm, and a hollow of 20 x 20 in it.
-  std::vector<std::string> drawn(int from, int to) const { return {"1=" + squares("wall.cnt", 20, 0, 6), "2=" + squares("hollow.cnt", 10, from, to)}; }
-  static std::vector<std::string> with(std::vector<std::string> head, const std::vector<std::string>& inputs, const std::vector<std::string>& tail) {
+  std::vector<std::string> drawn(int from, int to) const {
+    return {"1=" + squares("wall.cnt", 20, 0, 6), "2=" + squares("hollow.cnt", 10, from, to)};
+  }
+  static std::vector<std::string> with(std::vector<std::string> head, const std::vector<std::string>& inputs,
+                                       const std::vector<std::string>& tail) {
     head.insert(head.end(), inputs.begin(), inputs.end());
     head.insert(head.end(), tail.begin(), tail.end());
     return head;
@@ -50,7 +57,8 @@ TEST_F(Voids, AHollowIsClosedAndEmpty) {
 TEST_F(Voids, EveryFormatIsValidAgainstTheLabelsWithTheVoid) {
   const std::vector<std::string> inputs = drawn(2, 6);
   std::vector<std::string> outputs = {"--void", "2"};
-  for (const char* name : {"a.vtu", "a.vtk", "a.msh", "a.inp", "a.mesh", "a.bdf", "a.feb", "a.vtp", "a.ply", "a.off"}) outputs.insert(outputs.end(), {"-o", out(name)});
+  for (const char* name : {"a.vtu", "a.vtk", "a.msh", "a.inp", "a.mesh", "a.bdf", "a.feb", "a.vtp", "a.ply", "a.off"})
+    outputs.insert(outputs.end(), {"-o", out(name)});
   succeeds(with({"mesh"}, inputs, outputs));
   for (const char* name : {"a.vtu", "a.vtk", "a.msh", "a.inp", "a.mesh", "a.vtp", "a.ply", "a.off"}) {
     succeeds(with({"validate", out(name), "--against"}, inputs, {"--void", "2", "--report", out("R.json")}));
@@ -64,10 +72,14 @@ TEST_F(Voids, EveryFormatIsValidAgainstTheLabelsWithTheVoid) {
 
 TEST_F(Voids, PressureActsOnTheWallAlone) {
   // A cup: of the pressure on its inner wall the floor's share is left.
-  const std::string law = write("law.json", R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa", "density": "t/mm3"},
+  const std::string law = write(
+      "law.json",
+      R"({"schema": "stackmesh-law-1", "units": {"length": "mm", "force": "N", "stress": "MPa", "density": "t/mm3"},
     "labels": {"*": {"E_MPa": 1, "poisson": 0.3, "density_t_mm3": 1e-9}},
     "load_case": {"fixed": [{"set": "label_1_cap_low"}], "loaded": [{"set": "label_1_inner_2", "pressure_MPa": 0.1}]}})");
-  for (const std::vector<std::string>& how : {std::vector<std::string>{"--void", "2"}, {"--label", "1", "--keep-sets", "2"}, {"--void", "2", "--order", "1", "--refine", "1"}}) {
+  for (const std::vector<std::string>& how : {std::vector<std::string>{"--void", "2"},
+                                              {"--label", "1", "--keep-sets", "2"},
+                                              {"--void", "2", "--order", "1", "--refine", "1"}}) {
     std::vector<std::string> tail = how;
     tail.insert(tail.end(), {"--materials", law, "-o", out("a.inp"), "--report", out("R.json")});
     succeeds(with({"fem"}, drawn(2, 6), tail));
@@ -93,7 +105,8 @@ TEST_F(Voids, OfALabelVolumeAreWhatTheyWouldBeFilled) {
   const Json hollow = report();
   // Points of the surface may move for the worst tets, which a void has not: a thousandth of a volume at most.
   for (int label : {1, 2})
-    EXPECT_NEAR(number(hollow, label, "surface_volume_mm3") / number(filled, label, "surface_volume_mm3"), 1, 1e-3) << label;
+    EXPECT_NEAR(number(hollow, label, "surface_volume_mm3") / number(filled, label, "surface_volume_mm3"), 1, 1e-3)
+        << label;
   EXPECT_NEAR(number(hollow, 1, "tet_volume_mm3") / number(filled, 1, "tet_volume_mm3"), 1, 1e-3);
   EXPECT_TRUE(row(hollow, 2).at("tet_volume_mm3").is_null());
   EXPECT_GT(number(hollow, 2, "dice"), 0.99);
@@ -104,10 +117,12 @@ TEST_F(Voids, StayApartWhereTheOthersAreMerged) {
   const auto beside = [&](const std::string& name, double x0, double x1) {
     std::ostringstream text;
     text << "S 7\n";
-    for (int k = 0; k <= 6; ++k) text << "v 4 z " << 5 * k << "\n{\n" << x0 << " -20\n" << x1 << " -20\n" << x1 << " 20\n" << x0 << " 20\n}\n";
+    for (int k = 0; k <= 6; ++k)
+      text << "v 4 z " << 5 * k << "\n{\n" << x0 << " -20\n" << x1 << " -20\n" << x1 << " 20\n" << x0 << " 20\n}\n";
     return write(name, text.str());
   };
-  const std::vector<std::string> halves = {"3=" + beside("left.cnt", -20, 0), "1=" + beside("right.cnt", 0, 20), "2=" + squares("hollow.cnt", 10, 2, 4)};
+  const std::vector<std::string> halves = {"3=" + beside("left.cnt", -20, 0), "1=" + beside("right.cnt", 0, 20),
+                                           "2=" + squares("hollow.cnt", 10, 2, 4)};
   succeeds(with({"mesh"}, halves, {"--void", "2", "--merge", "-o", out("a.vtu"), "--report", out("R.json")}));
   const Json r = report();
   ASSERT_EQ(r.at("labels").size(), 2u);
@@ -119,7 +134,8 @@ TEST_F(Voids, StayApartWhereTheOthersAreMerged) {
   succeeds({"surface", testdata("heart4.nii.gz"), "--raw", "-o", out("a.vtp"), "--report", out("R.json")});
   const Json apart = report();
   const int first = apart.at("labels")[0].at("label"), last = apart.at("labels").back().at("label");
-  succeeds({"surface", testdata("heart4.nii.gz"), "--raw", "--merge", "--void", std::to_string(last), "-o", out("a.vtp"), "--report", out("R.json")});
+  succeeds({"surface", testdata("heart4.nii.gz"), "--raw", "--merge", "--void", std::to_string(last), "-o",
+            out("a.vtp"), "--report", out("R.json")});
   const Json merged = report();
   ASSERT_EQ(merged.at("labels").size(), 2u);
   double sum = 0;
@@ -131,7 +147,8 @@ TEST_F(Voids, StayApartWhereTheOthersAreMerged) {
 
 TEST_F(Voids, AreAskedForInVain) {
   fails(2, with({"mesh"}, drawn(2, 4), {"--void", "1,2", "-o", out("a.vtu")}), {"every label is a void"});
-  fails(3, with({"mesh"}, drawn(2, 4), {"--void", "7", "-o", out("a.vtu")}), {"label '7' is not in the input", "--void 7"});
+  fails(3, with({"mesh"}, drawn(2, 4), {"--void", "7", "-o", out("a.vtu")}),
+        {"label '7' is not in the input", "--void 7"});
   fails(2, {"validate", out("a.vtu"), "--void", "2"}, {"--against"});
 }
 

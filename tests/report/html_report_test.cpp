@@ -1,5 +1,4 @@
 // The page: what is packed comes out again, nothing of the input can act as HTML, and the file stays small.
-#include "model/space.h"
 #include "report/html_report.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include <random>
 
 #include "../validate/shapes.h"
+#include "model/space.h"
 #include "page_reader.h"
 
 namespace {
@@ -182,7 +182,9 @@ TEST(HtmlReport, CutsOfASphereAreClosedCirclesOfItsRadius) {
       ++circles;
       // Section coordinates begin at the outer corner of the first pixel.
       for (const auto& q : line.points)
-        EXPECT_NEAR(std::hypot(q[0] - 0.5 - centre.x, q[1] - 0.5 - centre.y), std::sqrt(r2), 0.02 + 10 * tolerance / std::sqrt(r2)) << h;
+        EXPECT_NEAR(std::hypot(q[0] - 0.5 - centre.x, q[1] - 0.5 - centre.y), std::sqrt(r2),
+                    0.02 + 10 * tolerance / std::sqrt(r2))
+            << h;
     }
   }
   EXPECT_EQ(circles, 39);  // every half millimetre, the poles left out
@@ -196,7 +198,8 @@ TEST(HtmlReport, ACutHasItsLabelOnTheSameSideInAMirroredVolume) {
     const std::string html = page(boxes.scene(), plain_report());
     const Json pictures = page_data(html)["meshes"][0]["pictures"];
     const Mesh m = mesh(html, 0, "surface");
-    EXPECT_GT(enclosed(m, 3) * area_of(lines(chunk(html, 0, pictures["cuts"], 7), pictures["cuts"]["unit_mm"]), 3), 0) << mirrored;
+    EXPECT_GT(enclosed(m, 3) * area_of(lines(chunk(html, 0, pictures["cuts"], 7), pictures["cuts"]["unit_mm"]), 3), 0)
+        << mirrored;
   }
 }
 
@@ -294,10 +297,18 @@ TEST(HtmlReport, SaysTheVerdictInWordsWithFiguresAndLimits) {
   const struct {
     std::vector<Verdict> verdicts;
     const char *word, *sentence;
-  } cases[] = {{{verdict("Closed", Status::pass, true), verdict("Quality", Status::pass)}, "PASS", "valid and inside every limit"},
-               {{verdict("Closed", Status::pass, true), verdict("Quality", Status::warn)}, "WARN", "Look before you use it at: Quality."},
-               {{verdict("Closed", Status::pass, true), verdict("Quality", Status::fail)}, "FAIL", "valid, but outside a limit: Quality."},
-               {{verdict("Closed", Status::fail, true), verdict("Quality", Status::fail)}, "FAIL", "is invalid and should not be used. What is wrong: Closed."}};
+  } cases[] = {{{verdict("Closed", Status::pass, true), verdict("Quality", Status::pass)},
+                "PASS",
+                "valid and inside every limit"},
+               {{verdict("Closed", Status::pass, true), verdict("Quality", Status::warn)},
+                "WARN",
+                "Look before you use it at: Quality."},
+               {{verdict("Closed", Status::pass, true), verdict("Quality", Status::fail)},
+                "FAIL",
+                "valid, but outside a limit: Quality."},
+               {{verdict("Closed", Status::fail, true), verdict("Quality", Status::fail)},
+                "FAIL",
+                "is invalid and should not be used. What is wrong: Closed."}};
   for (const auto& c : cases) {
     RunReport r = plain_report();
     r.verdicts = c.verdicts;
@@ -305,7 +316,8 @@ TEST(HtmlReport, SaysTheVerdictInWordsWithFiguresAndLimits) {
     EXPECT_NE(html.find(std::string(">") + c.word + "<"), std::string::npos) << c.word;
     EXPECT_NE(html.find(c.sentence), std::string::npos) << c.sentence;
     for (const Verdict& v : c.verdicts)
-      for (const std::string& part : {v.title, v.figure, v.limit, v.explanation, ">" + std::string(to_text(v.status)) + "<"})
+      for (const std::string& part :
+           {v.title, v.figure, v.limit, v.explanation, ">" + std::string(to_text(v.status)) + "<"})
         EXPECT_NE(html.find(part), std::string::npos) << part;
   }
 }
@@ -327,7 +339,8 @@ TEST(HtmlReport, ListsDefectsWithTheirPlaceInThePicturesFrame) {
     EXPECT_NE(html.find("two &lt;sheets&gt; cross"), std::string::npos);
     EXPECT_NE(html.find("self intersection"), std::string::npos);
     EXPECT_EQ(page_data(html)["meshes"][0]["defects"][0]["at_mm"][1], ras ? 5 : -5);
-    for (const double distance : mesh(html, 0, "surface").distances_mm) EXPECT_LT(distance, 1e-3);  // turned back for the voxels
+    // turned back for the voxels
+    for (const double distance : mesh(html, 0, "surface").distances_mm) EXPECT_LT(distance, 1e-3);
   }
 }
 
@@ -382,7 +395,8 @@ TEST(HtmlReport, TheSameBytesForAnyNumberOfThreads) {
   LabelVolume v = empty_volume(30, 30, 30, 3);
   std::mt19937 random(7);
   for (int n = 0; n < 60; ++n) {
-    const int x = static_cast<int>(random() % 24), y = static_cast<int>(random() % 24), z = static_cast<int>(random() % 24);
+    const int x = static_cast<int>(random() % 24), y = static_cast<int>(random() % 24),
+              z = static_cast<int>(random() % 24);
     fill(v, {x, y, z}, {x + 5, y + 5, z + 5}, 1 + n % 3);
   }
   const InterfaceComplex surface = voxel_surface(v);

@@ -49,10 +49,13 @@ std::string element_text(const std::string& html, const std::string& id) {
   return html.substr(begin, html.find("</", begin) - begin);
 }
 
-Json page_data(const std::string& html) { return Json::parse(element_text(html, "data")); }
+Json page_data(const std::string& html) {
+  return Json::parse(element_text(html, "data"));
+}
 
 std::string chunk(const std::string& html, int mesh, const Json& where, std::size_t i) {
-  const std::string blob = from_base64(element_text(html, "blob-" + std::to_string(mesh) + "-" + where["blob"].get<std::string>()));
+  const std::string blob =
+      from_base64(element_text(html, "blob-" + std::to_string(mesh) + "-" + where["blob"].get<std::string>()));
   const std::size_t begin = where["offsets"][i], end = where["offsets"][i + 1];
   EXPECT_LE(end, blob.size());
   return inflated(blob.substr(begin, end - begin));
@@ -123,13 +126,15 @@ Mesh mesh(const std::string& html, int number, const std::string& name) {
                         where["origin_mm"][2].get<double>() + unit * static_cast<double>(at[2])});
   }
   EXPECT_TRUE(positions.at_end());
-  Numbers corners(chunk(html, number, where, tets ? "tets" : "triangles")), labels(chunk(html, number, where, "labels"));
+  Numbers corners(chunk(html, number, where, tets ? "tets" : "triangles")),
+      labels(chunk(html, number, where, "labels"));
   const std::string angles = chunk(html, number, where, "angles");
   EXPECT_EQ(angles.size(), where["elements"].get<std::size_t>());
   int first = 0;
   for (const char angle : angles) {
     std::vector<int> v = {first += static_cast<int>(corners.number())};
-    for (int k = 1; k < (tets ? 4 : 3); ++k) v.push_back((tets ? v.back() : first) + static_cast<int>(corners.number()));
+    for (int k = 1; k < (tets ? 4 : 3); ++k)
+      v.push_back((tets ? v.back() : first) + static_cast<int>(corners.number()));
     m.elements.push_back(v);
     const int below = static_cast<int>(labels.number());
     m.labels.push_back({below, tets ? below : static_cast<int>(labels.number())});

@@ -1,7 +1,7 @@
 // What the page colours a solver model's surface by.
-#include <gtest/gtest.h>
-
 #include "report/surface_values.h"
+
+#include <gtest/gtest.h>
 
 using namespace stackmesh;
 
@@ -23,7 +23,8 @@ SolverModel model() {
   return m;
 }
 
-const InterfaceComplex kSurface = {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{{0, 1, 2}, 1, 0}, {{1, 2, 3}, 1, 0}}};
+const InterfaceComplex kSurface = {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}},
+                                   {{{0, 1, 2}, 1, 0}, {{1, 2, 3}, 1, 0}}};
 
 TEST(SurfaceValues, AFaceShowsItsSmallestSetAndAllThatActs) {
   const SurfaceValues all = surface_values(model(), {});

@@ -92,8 +92,7 @@ TEST(VoxelComponents, TouchingCornersAreThoseSharedByTwoComponentsOfALabel) {
             for (int a = 0; a < 4; ++a)
               for (int b = 0; b < 4; ++b) {
                 const int xa = cx - a % 2, ya = cy - a / 2, xb = cx - b % 2, yb = cy - b / 2;
-                if (std::min({xa, ya, xb, yb}) < 0 || std::max(xa, xb) >= width || std::max(ya, yb) >= height)
-                  continue;
+                if (std::min({xa, ya, xb, yb}) < 0 || std::max(xa, xb) >= width || std::max(ya, yb) >= height) continue;
                 const std::size_t i = at(xa, ya, k), j = at(xb, yb, other);
                 if (v.voxels[i] != 0 && v.voxels[i] == v.voxels[j] && component[i] != component[j])
                   expected.insert(corner_key(cx, cy));

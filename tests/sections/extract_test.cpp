@@ -37,8 +37,7 @@ LabelVolume oblique_volume(int seed) {
 }
 
 /// All that a section is, to be compared.
-std::vector<std::tuple<double, std::int64_t, std::int64_t, std::int64_t, std::int64_t>> digest(
-    const Stack& stack) {
+std::vector<std::tuple<double, std::int64_t, std::int64_t, std::int64_t, std::int64_t>> digest(const Stack& stack) {
   std::vector<std::tuple<double, std::int64_t, std::int64_t, std::int64_t, std::int64_t>> all;
   for (const Section& s : stack.sections) {
     all.emplace_back(s.z_mm, s.points.size(), s.edges.size(), 0, 0);
@@ -92,18 +91,15 @@ TEST(ExtractSections, EveryVoxelIsInTheRegionOfItsLabelWhereItLiesInTheWorld) {
               const Label label = v.labels[v.voxels[v.index(i, j, k)]].number;
               const double px = p.x / stack.grid_x_mm, py = p.y / stack.grid_y_mm;
               bool inside = false;
-              if (label == 0)
-                continue;  // covered: regions of labels hold their voxels, and areas add up below
+              if (label == 0) continue;  // covered: regions of labels hold their voxels, and areas add up below
               for (const SectionEdge& e : stack.sections[slice].edges) {
                 if (e.left != label && e.right != label) continue;
                 const GridPoint a = stack.sections[slice].points[e.a], b = stack.sections[slice].points[e.b];
                 if ((a.y <= py) == (b.y <= py)) continue;
-                if (a.x + (py - a.y) * (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y) >
-                    px)
+                if (a.x + (py - a.y) * (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y) > px)
                   inside = !inside;
               }
-              ASSERT_TRUE(inside) << "seed " << seed << " axis " << w << " voxel " << i << " " << j << " "
-                                  << k;
+              ASSERT_TRUE(inside) << "seed " << seed << " axis " << w << " voxel " << i << " " << j << " " << k;
             }
         if (simplify > 0) continue;
         const auto voxels = count_voxels(v);
@@ -185,8 +181,7 @@ TEST(ExtractSections, MirroredAndTransposedVolumesHaveTheSameAreas) {
 
 TEST(ExtractSections, SimplifiedSectionsOfRandomStacksKeepCentresAndDoNotCross) {
   for (int seed = 0; seed < 400; ++seed) {
-    const LabelVolume v =
-        testing_support::random_volume(seed);  // palette and numbers agree: centres can be compared
+    const LabelVolume v = testing_support::random_volume(seed);  // palette and numbers agree: centres can be compared
     const ContourResult result = extract(v, StackAxis::z, seed % 2 != 0 ? 0.5 : 2);
     ASSERT_LE(result.vertices, result.vertices_traced);
     for (int k = 0; k < v.size[2]; ++k) {
@@ -212,8 +207,7 @@ TEST(ExtractSections, NamesWhatTouchesTheEnds) {
 
 TEST(ExtractSections, AnEmptySliceIsAnEmptySection) {
   const Stack stack =
-      extract(testing_support::volume_of({{"11", "11"}, {"00", "00"}, {"11", "11"}}, 2.5), StackAxis::z)
-          .stack;
+      extract(testing_support::volume_of({{"11", "11"}, {"00", "00"}, {"11", "11"}}, 2.5), StackAxis::z).stack;
   ASSERT_EQ(stack.sections.size(), 3U);
   EXPECT_TRUE(stack.sections[1].edges.empty());
   EXPECT_EQ(stack.sections[1].z_mm, 2.5);
@@ -250,8 +244,7 @@ TEST(ExtractSections, RefusesOneSliceAndEmptyVolumes) {
     return "no error";
   };
   const LabelVolume one = testing_support::volume_of({{"01", "11"}});
-  EXPECT_NE(error(one, StackAxis::z).find("only one slice along the stacking axis, axis z"),
-            std::string::npos)
+  EXPECT_NE(error(one, StackAxis::z).find("only one slice along the stacking axis, axis z"), std::string::npos)
       << error(one, StackAxis::z);
   EXPECT_EQ(error(one, StackAxis::x), "no error");
   EXPECT_NE(error(testing_support::volume_of({{"00"}, {"00"}}), StackAxis::z).find("no non-zero label"),

@@ -16,8 +16,7 @@ int below(Random& r, int n) {
 }
 
 std::int64_t cross(GridPoint o, GridPoint a, GridPoint b) {
-  return (std::int64_t{a.x} - o.x) * (std::int64_t{b.y} - o.y) -
-         (std::int64_t{a.y} - o.y) * (std::int64_t{b.x} - o.x);
+  return (std::int64_t{a.x} - o.x) * (std::int64_t{b.y} - o.y) - (std::int64_t{a.y} - o.y) * (std::int64_t{b.x} - o.x);
 }
 
 int sign(std::int64_t v) {
@@ -44,8 +43,7 @@ bool clash(const Edge& e, const Edge& f) {
   if (fa * fb < 0 && ea * eb < 0) return true;
   return (fa == 0 && within(e.a, e.b, f.a) && !shared(e, f.a)) ||
          (fb == 0 && within(e.a, e.b, f.b) && !shared(e, f.b)) ||
-         (ea == 0 && within(f.a, f.b, e.a) && !shared(f, e.a)) ||
-         (eb == 0 && within(f.a, f.b, e.b) && !shared(f, e.b));
+         (ea == 0 && within(f.a, f.b, e.a) && !shared(f, e.a)) || (eb == 0 && within(f.a, f.b, e.b) && !shared(f, e.b));
 }
 
 }  // namespace
@@ -56,8 +54,7 @@ Slice random_slice(std::uint64_t seed, int largest) {
   s.width = 1 + below(r, largest);
   s.height = 1 + below(r, largest);
   s.pixels.assign(static_cast<std::size_t>(s.width) * s.height, 0);
-  const int labels = 1 + below(r, 8), empty = below(r, 101), keep = below(r, 101),
-            kind = static_cast<int>(seed % 6);
+  const int labels = 1 + below(r, 8), empty = below(r, 101), keep = below(r, 101), kind = static_cast<int>(seed % 6);
   const auto fill = [&](const std::function<int(int, int)>& f) {
     for (int y = 0; y < s.height; ++y)
       for (int x = 0; x < s.width; ++x)
@@ -68,14 +65,11 @@ Slice random_slice(std::uint64_t seed, int largest) {
   if (kind == 1) fill([&](int, int) { return below(r, 100) < empty ? 0 : 1; });
   if (kind == 2)  // runs along x or y
     fill([&](int x, int y) {
-      return x > 0 && below(r, 100) < keep   ? s.at(x - 1, y)
-             : y > 0 && below(r, 100) < keep ? s.at(x, y - 1)
-                                             : any();
+      return x > 0 && below(r, 100) < keep ? s.at(x - 1, y) : y > 0 && below(r, 100) < keep ? s.at(x, y - 1) : any();
     });
   if (kind == 3)  // blobs
     for (int b = 0; b < 4 + labels; ++b) {
-      const int cx = below(r, s.width), cy = below(r, s.height), radius = 1 + below(r, 7),
-                label = below(r, labels + 1);
+      const int cx = below(r, s.width), cy = below(r, s.height), radius = 1 + below(r, 7), label = below(r, labels + 1);
       fill([&](int x, int y) {
         return (x - cx) * (x - cx) + (y - cy) * (y - cy) <= radius * radius ? label : s.at(x, y);
       });
@@ -90,13 +84,11 @@ Slice random_slice(std::uint64_t seed, int largest) {
                 label = 1 + below(r, labels);
       const bool ring = below(r, 2) != 0;
       fill([&](int x, int y) {
-        const bool in = x >= x0 && x <= x1 && y >= y0 && y <= y1,
-                   inner = x > x0 && x < x1 && y > y0 && y < y1;
+        const bool in = x >= x0 && x <= x1 && y >= y0 && y <= y1, inner = x > x0 && x < x1 && y > y0 && y < y1;
         return in && !(ring && inner) ? label : s.at(x, y);
       });
     }
-  if (std::all_of(s.pixels.begin(), s.pixels.end(), [](auto p) { return p == 0; }))
-    s.pixels[s.pixels.size() / 2] = 1;
+  if (std::all_of(s.pixels.begin(), s.pixels.end(), [](auto p) { return p == 0; })) s.pixels[s.pixels.size() / 2] = 1;
   return s;
 }
 

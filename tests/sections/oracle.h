@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "sections/arcs.h"
 #include "model/label_volume.h"
 #include "model/stack.h"
+#include "sections/arcs.h"
 
 namespace stackmesh::contour_tests {
 

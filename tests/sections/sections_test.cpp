@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 #include "checks.h"
+#include "random_stacks.h"
 #include "sections/layer_sections.h"
+#include "sections/polygons.h"
 #include "sections/virtual_layers.h"
 #include "sections/virtual_sections.h"
-#include "random_stacks.h"
-#include "sections/polygons.h"
 
 namespace stackmesh {
 namespace {
@@ -29,14 +29,17 @@ ContourPolygon circle(double x, double y, double radius, int points = 120) {
 }
 
 /// Area of a regular polygon over that of its circle.
-double share_of_circle(int points = 120) { return std::sin(2 * M_PI / points) * points / (2 * M_PI); }
+double share_of_circle(int points = 120) {
+  return std::sin(2 * M_PI / points) * points / (2 * M_PI);
+}
 
 Stack stack_of(const std::vector<LabelContours>& files) {
   std::vector<Warning> warnings;
   return sections_from_contours(files, warnings);
 }
 
-LabelContours file_of(Label label, const std::vector<double>& heights, const std::function<ContourPolygon(double)>& at) {
+LabelContours file_of(Label label, const std::vector<double>& heights,
+                      const std::function<ContourPolygon(double)>& at) {
   LabelContours f;
   f.path = "made";
   f.label = label;
@@ -44,10 +47,12 @@ LabelContours file_of(Label label, const std::vector<double>& heights, const std
   return f;
 }
 
-std::vector<std::vector<Section>> virtual_sections(const Stack& stack, int per_gap, double pixel_mm, double tension, double tolerance_px) {
+std::vector<std::vector<Section>> virtual_sections(const Stack& stack, int per_gap, double pixel_mm, double tension,
+                                                   double tolerance_px) {
   VirtualLayerOptions options;
   options.per_gap.assign(stack.sections.size() - 1, per_gap);
-  options.unit = {static_cast<std::int32_t>(pixel_mm / stack.grid_x_mm) | 1, static_cast<std::int32_t>(pixel_mm / stack.grid_y_mm) | 1};
+  options.unit = {static_cast<std::int32_t>(pixel_mm / stack.grid_x_mm) | 1,
+                  static_cast<std::int32_t>(pixel_mm / stack.grid_y_mm) | 1};
   options.tension = tension;
   std::vector<std::vector<Section>> out(stack.sections.size() - 1);
   interpolate_sections(stack, options, [&](std::size_t gap, const LabelLayer& layer) {
@@ -112,7 +117,8 @@ bool same(const Section& a, const Section& b) {
 }
 
 TEST(VirtualSections, RealSectionsStayToTheLastDigit) {
-  const Stack before = stack_of({file_of(1, {0, 6, 9}, [](double z) { return circle(20, 21 + z, 11.37 - 0.1 * z, 61); })});
+  const Stack before =
+      stack_of({file_of(1, {0, 6, 9}, [](double z) { return circle(20, 21 + z, 11.37 - 0.1 * z, 61); })});
   Stack after = before;
   EXPECT_EQ(add_virtual_sections(after, 4, 1, unheard), 8u);
   ASSERT_EQ(after.sections.size(), 11u);
@@ -135,7 +141,8 @@ TEST(VirtualSections, AreTheSameForAnyThreadCount) {
 }
 
 TEST(VirtualSections, AutomaticNumberFollowsEachGap) {
-  Stack stack = stack_of({file_of(1, {0, 1, 11, 16}, [](double z) { return circle(32 + 2 * std::floor(z / 5), 32, 32); })});
+  Stack stack =
+      stack_of({file_of(1, {0, 1, 11, 16}, [](double z) { return circle(32 + 2 * std::floor(z / 5), 32, 32); })});
   EXPECT_NEAR(contour_feature_mm(stack), 2 * 32 * std::sin(M_PI / 120), 1e-3);  // the edge: longer than 64 / 64
   add_virtual_sections(stack, std::nullopt, 1, unheard);
   std::vector<int> between;
@@ -186,7 +193,10 @@ TEST(LayerSection, NoiseGivesSectionsThatStitchClosed) {
     Stack stack;
     stack.grid_x_mm = stack.grid_y_mm = 0.01;
     stack.labels = {{0, ""}, {1, ""}, {2, ""}, {7, ""}};
-    for (int k = 0; k < 4; ++k) stack.sections.push_back(layer_section(noise_layer(random, 0.7 * k), seed % 3 == 0 ? 0 : seed % 3 == 1 ? 0.1 : 0.6));
+    for (int k = 0; k < 4; ++k)
+      stack.sections.push_back(layer_section(noise_layer(random, 0.7 * k), seed % 3 == 0   ? 0
+                                                                           : seed % 3 == 1 ? 0.1
+                                                                                           : 0.6));
     StitchOptions options;
     options.threads = 1;
     ASSERT_EQ(defects(stitch_sections(stack, options, quiet).complex), "") << "seed " << seed;

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "sections/components.h"
 #include "oracle.h"
+#include "sections/components.h"
 
 namespace stackmesh::contour_tests {
 namespace {
@@ -46,17 +46,13 @@ TEST(SimplifyArcs, AwkwardShapesKeepCentresAndDoNotCross) {
       {"diagonal chain", slice_of(30, 30, [](int x, int y) { return x == y ? 1 : 0; })},
       {"diagonal chains of two labels", slice_of(30, 30, [](int x, int y) { return (x + y) % 2 ? 1 : 2; })},
       {"diagonal staircase", slice_of(40, 40, [](int x, int y) { return x > y ? 1 : 0; })},
-      {"thin diagonal staircase",
-       slice_of(40, 40, [](int x, int y) { return x == y || x == y + 1 ? 1 : 0; })},
+      {"thin diagonal staircase", slice_of(40, 40, [](int x, int y) { return x == y || x == y + 1 ? 1 : 0; })},
       {"flat staircase", slice_of(60, 20, [](int x, int y) { return x > 7 * y ? 1 : 2; })},
       {"nested rings", slice_of(31, 31, [&](int x, int y) { return ring(x, y) % 2; })},
       {"nested rings of five labels", slice_of(31, 31, [&](int x, int y) { return ring(x, y) % 5 + 1; })},
-      {"round rings",
-       slice_of(41, 41, [](int x, int y) { return static_cast<int>(std::hypot(x - 20, y - 20)) % 4; })},
-      {"sectors", slice_of(41, 41,
-                           [](int x, int y) {
-                             return static_cast<int>(4 + std::floor(std::atan2(y - 20.3, x - 20.7)));
-                           })},
+      {"round rings", slice_of(41, 41, [](int x, int y) { return static_cast<int>(std::hypot(x - 20, y - 20)) % 4; })},
+      {"sectors",
+       slice_of(41, 41, [](int x, int y) { return static_cast<int>(4 + std::floor(std::atan2(y - 20.3, x - 20.7))); })},
       {"comb", slice_of(40, 20, [](int x, int y) { return y == 0 || x % 2; })},
       {"cross of slits", slice_of(21, 21, [](int x, int y) { return x == 10 || y == 10 ? 0 : 1; })}};
   for (const auto& [name, s] : shapes)
@@ -77,10 +73,9 @@ TEST(SimplifyArcs, NoCrackLeavesItsContourByMuchMoreThanTheTolerance) {
         for (const CrackVertex& v : traced.arcs[a].chain) {
           double nearest = 1e9;
           for (std::size_t i = 0; i + 1 < kept[a].size(); ++i) {
-            const double px = kept[a][i].x, py = kept[a][i].y, dx = kept[a][i + 1].x - px,
-                         dy = kept[a][i + 1].y - py;
-            const double t = std::clamp(
-                ((v.position.x - px) * dx + (v.position.y - py) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+            const double px = kept[a][i].x, py = kept[a][i].y, dx = kept[a][i + 1].x - px, dy = kept[a][i + 1].y - py;
+            const double t =
+                std::clamp(((v.position.x - px) * dx + (v.position.y - py) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
             nearest = std::min(nearest, std::hypot(px + t * dx - v.position.x, py + t * dy - v.position.y));
           }
           worst = std::max(worst, nearest / kGridPerPixel / tolerance);
@@ -101,8 +96,8 @@ double shrinks(const Slice& s, double tolerance) {
 
 TEST(SimplifyArcs, SmoothShapesShrink) {
   const Slice disc = slice_of(220, 220, [](int x, int y) { return std::hypot(x - 110.3, y - 109.6) < 100; });
-  const Slice ellipse = slice_of(
-      300, 120, [](int x, int y) { return std::hypot((x - 150.2) / 140, (y - 60.4) / 50) < 1 ? 2 : 1; });
+  const Slice ellipse =
+      slice_of(300, 120, [](int x, int y) { return std::hypot((x - 150.2) / 140, (y - 60.4) / 50) < 1 ? 2 : 1; });
   const Slice box = slice_of(100, 100, [](int x, int y) { return x > 10 && x < 90 && y > 20 && y < 70; });
   const Slice slope = slice_of(300, 60, [](int x, int y) { return 7 * y > x + 3; });
   EXPECT_EQ(shrinks(box, 0.5), 64);  // 256 cracks, 4 corners
@@ -125,7 +120,8 @@ TEST(SimplifyArcs, ATouchingCornerIsDrawnBackAndKept) {
   const Slice box = slice_of(50, 50, [](int x, int y) { return x > 10 && x < 40 && y > 20 && y < 30; });
   CornerRules rules;
   rules.part = true;
-  rules.keep = {{corner_key(25, 21), 8 | 4}, {corner_key(40, 25), 1}};  // by the pixels above it; by the one to its lower left
+  // by the pixels above it; by the one to its lower left
+  rules.keep = {{corner_key(25, 21), 8 | 4}, {corner_key(40, 25), 1}};
   const SliceArcs traced = trace_arcs(box, rules);
   const std::vector<Edge> edges = edges_of(traced, 2);
   EXPECT_EQ(edges.size(), 6U);

@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
-#include "sections/extract.h"
 #include "oracle.h"
+#include "sections/extract.h"
 
 namespace stackmesh::contour_tests {
 namespace {
@@ -67,8 +67,7 @@ TEST(TraceArcs, EveryCrackIsInOneArcWithTheLabelsOfTheImage) {
       ASSERT_EQ(std::abs(c[0] - c[2]) + std::abs(c[1] - c[3]), 1) << "seed " << seed;
       ASSERT_EQ(labels, sides(s, c)) << "seed " << seed << " at " << c[0] << " " << c[1];
       ASSERT_NE(labels.first, labels.second);
-      undirected.insert(
-          {std::min(c[0], c[2]), std::min(c[1], c[3]), std::max(c[0], c[2]), std::max(c[1], c[3])});
+      undirected.insert({std::min(c[0], c[2]), std::min(c[1], c[3]), std::max(c[0], c[2]), std::max(c[1], c[3])});
     }
     ASSERT_EQ(undirected.size(), cracks.size()) << "seed " << seed;
   }

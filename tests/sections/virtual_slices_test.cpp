@@ -54,8 +54,7 @@ TEST(VirtualSlices, GeometryAndLabelsAreKept) {
 
 TEST(VirtualSlices, AutomaticNumberMakesTheGapAPixel) {
   LabelVolume in = disc_stack({10, 12, 14}, 40);
-  for (const auto& [gap, expected] :
-       std::map<double, int>{{1, 0}, {1.5, 0}, {1.6, 1}, {3, 2}, {7.4, 6}, {7.6, 7}}) {
+  for (const auto& [gap, expected] : std::map<double, int>{{1, 0}, {1.5, 0}, {1.6, 1}, {3, 2}, {7.4, 6}, {7.6, 7}}) {
     in.spacing_mm = {1, 1.2, gap};  // the smaller in-plane spacing counts
     EXPECT_EQ(add_virtual_slices(in, 2, {}).per_gap, expected) << gap;
   }
@@ -81,22 +80,19 @@ TEST(VirtualSlices, GrowingDiscHasRadiiBetween) {
 }
 
 TEST(VirtualSlices, GrowingDiscInPixelsThatAreNotSquareHasRadiiBetween) {
-  LabelVolume in = shapes(64, 32, 5, 8, [](double x, double y, int k) {
-    return std::hypot(x - 32, 2 * y - 32) < 10 + 4 * k ? 1 : 0;
-  });
+  LabelVolume in = shapes(
+      64, 32, 5, 8, [](double x, double y, int k) { return std::hypot(x - 32, 2 * y - 32) < 10 + 4 * k ? 1 : 0; });
   in.spacing_mm = {0.5, 1, 8};  // half the pixel: radii in mm are half of those in x pixels
   InterpolateOptions options;
   options.per_gap = 3;
   options.tension = 0.5;
   const LabelVolume out = add_virtual_slices(in, 2, options).volume;
-  for (int k = 4; k <= 12; ++k)
-    EXPECT_NEAR(std::sqrt(area(out, k, 1) * 0.5 / M_PI), 0.5 * (10 + k), 0.15) << k;
+  for (int k = 4; k <= 12; ++k) EXPECT_NEAR(std::sqrt(area(out, k, 1) * 0.5 / M_PI), 0.5 * (10 + k), 0.15) << k;
 }
 
 TEST(VirtualSlices, ShiftingDiscMovesWithoutBreaking) {
-  const LabelVolume in = shapes(80, 48, 4, 6, [](double x, double y, int k) {
-    return std::hypot(x - 20 - 10 * k, y - 24) < 14 ? 1 : 0;
-  });
+  const LabelVolume in =
+      shapes(80, 48, 4, 6, [](double x, double y, int k) { return std::hypot(x - 20 - 10 * k, y - 24) < 14 ? 1 : 0; });
   const LabelVolume out = interpolated(in, 4).volume;
   for (int k = 0; k < out.size[2]; ++k) {
     EXPECT_NEAR(centre_x(out, k, 1), 20 + 2 * k, 1) << k;
@@ -147,8 +143,7 @@ TEST(VirtualSlices, IslandWithoutCounterpartEndsAloneAtHalfWay) {
                     alone = interpolated(with_far_part(false), 9).volume;
   for (int k = 0; k < both.size[2]; ++k) {
     for (int y = 0; y < 40; ++y)
-      for (int x = 0; x < 40; ++x)
-        ASSERT_EQ(both.voxels[both.index(x, y, k)], alone.voxels[alone.index(x, y, k)]);
+      for (int x = 0; x < 40; ++x) ASSERT_EQ(both.voxels[both.index(x, y, k)], alone.voxels[alone.index(x, y, k)]);
     EXPECT_EQ(area(alone, k, 1) > 0, k > 5 && k < 15) << k;
   }
 }
@@ -218,8 +213,7 @@ TEST(VirtualSlices, NoLabelAppearsThatNeitherSliceHas) {
 }
 
 /// The components of the output are those of the input, one to one.
-void expect_same_components(const LabelVolume& in, const LabelVolume& out, int per_gap,
-                            const std::string& what) {
+void expect_same_components(const LabelVolume& in, const LabelVolume& out, int per_gap, const std::string& what) {
   const std::vector<int> a = components(in), b = components(out);
   std::map<int, int> forth, back;
   for (int k = 0; k < in.size[2]; ++k)
@@ -242,8 +236,7 @@ TEST(VirtualSlices, ComponentsAreThoseOfTheInput) {
     InterpolateOptions options;
     options.per_gap = per_gap;
     options.tension = seed % 3 == 0 ? 1 : seed % 3 == 1 ? 0.25 : 0.5;
-    expect_same_components(in, add_virtual_slices(in, 2, options).volume, per_gap,
-                           "seed " + std::to_string(seed));
+    expect_same_components(in, add_virtual_slices(in, 2, options).volume, per_gap, "seed " + std::to_string(seed));
     if (HasFatalFailure()) return;
   }
 }

@@ -6,8 +6,8 @@
 #include <queue>
 #include <vector>
 
-#include "sections/virtual_slices.h"
 #include "model/label_volume.h"
+#include "sections/virtual_slices.h"
 
 namespace stackmesh::testing_support {
 
@@ -26,8 +26,7 @@ LabelVolume shapes(int width, int height, int slices, double gap_mm, F label) {
   v.labels = {{0, ""}, {1, ""}, {2, ""}, {3, ""}};
   for (int k = 0; k < slices; ++k)
     for (int j = 0; j < height; ++j)
-      for (int i = 0; i < width; ++i)
-        v.voxels.push_back(static_cast<std::uint16_t>(label(i + 0.5, j + 0.5, k)));
+      for (int i = 0; i < width; ++i) v.voxels.push_back(static_cast<std::uint16_t>(label(i + 0.5, j + 0.5, k)));
   return v;
 }
 
@@ -74,11 +73,9 @@ inline std::vector<int> components(const LabelVolume& v) {
       front.pop();
       const int i = static_cast<int>(p % v.size[0]), j = static_cast<int>(p / v.size[0] % v.size[1]),
                 k = static_cast<int>(p / v.size[0] / v.size[1]);
-      const int next[6][3] = {{i - 1, j, k}, {i + 1, j, k}, {i, j - 1, k},
-                              {i, j + 1, k}, {i, j, k - 1}, {i, j, k + 1}};
+      const int next[6][3] = {{i - 1, j, k}, {i + 1, j, k}, {i, j - 1, k}, {i, j + 1, k}, {i, j, k - 1}, {i, j, k + 1}};
       for (const auto& n : next) {
-        if (n[0] < 0 || n[1] < 0 || n[2] < 0 || n[0] >= v.size[0] || n[1] >= v.size[1] || n[2] >= v.size[2])
-          continue;
+        if (n[0] < 0 || n[1] < 0 || n[2] < 0 || n[0] >= v.size[0] || n[1] >= v.size[1] || n[2] >= v.size[2]) continue;
         const std::size_t q = v.index(n[0], n[1], n[2]);
         if (of[q] != 0 || v.voxels[q] != v.voxels[p]) continue;
         of[q] = count;

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "checks.h"
-#include "sections/virtual_sections.h"
 #include "sections/polygons.h"
+#include "sections/virtual_sections.h"
 #include "validate/boundaries.h"
 
 namespace stackmesh {
@@ -13,17 +13,23 @@ namespace {
 
 using namespace testing_support;
 
-ContourPolygon box(double x0, double y0, double x1, double y1) { return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}}; }
+ContourPolygon box(double x0, double y0, double x1, double y1) {
+  return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}};
+}
 
 ContourPolygon disc(double cx, double cy, double r, int n = 64) {
   ContourPolygon p;
-  for (int i = 0; i < n; ++i) p.points.push_back({cx + r * std::cos(2 * M_PI * i / n), cy + r * std::sin(2 * M_PI * i / n)});
+  for (int i = 0; i < n; ++i)
+    p.points.push_back({cx + r * std::cos(2 * M_PI * i / n), cy + r * std::sin(2 * M_PI * i / n)});
   return p;
 }
 
-double disc_area(double r, int n = 64) { return 0.5 * n * std::sin(2 * M_PI / n) * r * r; }
+double disc_area(double r, int n = 64) {
+  return 0.5 * n * std::sin(2 * M_PI / n) * r * r;
+}
 
-LabelContours file_of(Label label, const std::vector<double>& heights, const std::function<std::vector<ContourPolygon>(double)>& at) {
+LabelContours file_of(Label label, const std::vector<double>& heights,
+                      const std::function<std::vector<ContourPolygon>(double)>& at) {
   LabelContours f;
   f.path = "drawn";
   f.label = label;
@@ -62,7 +68,8 @@ ContourStackOptions slices() {
   return o;
 }
 
-Made make(const std::vector<LabelContours>& files, ContourStackOptions options = {}, std::optional<int> per_gap = std::nullopt, Caps caps = Caps::automatic) {
+Made make(const std::vector<LabelContours>& files, ContourStackOptions options = {},
+          std::optional<int> per_gap = std::nullopt, Caps caps = Caps::automatic) {
   Made m;
   options.caps = caps;
   m.stack = sections_from_contours(files, m.warnings, options);
@@ -104,7 +111,9 @@ TEST(DrawnCopies, CountOnceHoweverTheyAreWritten) {
   };
   const ContourPolygon a = disc(0, 0, 20);
   const double volume = disc_area(20) * 24;
-  const std::vector<std::vector<ContourPolygon>> drawn = {{a, a}, {a, rotated(a)}, {a, reversed(a)}, {twice_round(a)}, {a, disc(0.1, 0, 20)}, {a, disc(0.02, 0.03, 20.03, 61)}};
+  const std::vector<std::vector<ContourPolygon>> drawn = {
+      {a, a},           {a, rotated(a)},       {a, reversed(a)},
+      {twice_round(a)}, {a, disc(0.1, 0, 20)}, {a, disc(0.02, 0.03, 20.03, 61)}};
   for (std::size_t which = 0; which < drawn.size(); ++which)
     for (int where : {3, 7, -1}) {  // one section, the last one, all
       LabelContours f = file_of(1, every(3, 8), [&](double) { return std::vector{a}; });
@@ -121,13 +130,21 @@ TEST(DrawnCopies, CountOnceHoweverTheyAreWritten) {
 
 TEST(DrawnCopies, WallsBridgesAndNeighboursStay) {
   // A thin wall, a keyhole contour and two boxes with a common side are no copies.
-  const Made wall = make({file_of(1, every(2, 4), [](double) { return std::vector{disc(0, 0, 20), disc(0, 0, 19)}; })}, slices());
+  const Made wall = make({file_of(1, every(2, 4),
+                                  [](double) {
+                                    return std::vector{disc(0, 0, 20), disc(0, 0, 19)};
+                                  })},
+                         slices());
   EXPECT_NEAR(wall.volume(1), (disc_area(20) - disc_area(19)) * 8, 2);
   ContourPolygon keyhole = box(0, 0, 20, 20);
   keyhole.points.insert(keyhole.points.begin() + 1, {{5, 5}, {5, 15}, {15, 15}, {15, 5}, {5, 5}, {0, 0}});
   const Made hole = make({file_of(1, every(2, 4), [&](double) { return std::vector{keyhole}; })}, slices());
   EXPECT_NEAR(hole.volume(1), (400 - 100) * 8, 2);
-  const Made pair = make({file_of(1, every(2, 4), [](double) { return std::vector{box(0, 0, 10, 10), box(10, 0, 20, 10)}; })}, slices());
+  const Made pair = make({file_of(1, every(2, 4),
+                                  [](double) {
+                                    return std::vector{box(0, 0, 10, 10), box(10, 0, 20, 10)};
+                                  })},
+                         slices());
   EXPECT_NEAR(pair.volume(1), 200 * 8, 1);
   EXPECT_EQ(surface_of(pair.check, 1).components, 1);
   for (const Made* m : {&wall, &hole, &pair}) EXPECT_TRUE(m->warnings.empty());
@@ -249,11 +266,13 @@ TEST(NestedStacks, WhatLiesInsideStaysInside) {
     const bool one_file = seed % 5 == 4;  // the same walls and holes, drawn as one label
     if (one_file) {
       for (std::size_t d = 1; d < files.size(); ++d)
-        for (std::size_t k = 0; k < files[d].sections.size(); ++k) files[0].sections[k].polygons.push_back(files[d].sections[k].polygons[0]);
+        for (std::size_t k = 0; k < files[d].sections.size(); ++k)
+          files[0].sections[k].polygons.push_back(files[d].sections[k].polygons[0]);
       files.resize(1);
     }
     const Caps caps = seed % 2 ? Caps::round : Caps::flat;
-    const std::optional<int> per_gap = seed % 3 == 0 ? std::optional<int>() : std::optional<int>(static_cast<int>(seed % 3) - 1);
+    const std::optional<int> per_gap =
+        seed % 3 == 0 ? std::optional<int>() : std::optional<int>(static_cast<int>(seed % 3) - 1);
     const Made m = make(files, {}, per_gap, caps);
     ASSERT_TRUE(m.warnings.empty()) << "seed " << seed << ": " << m.warnings[0].text;
     const double low = files[0].sections.front().z_mm, high = files[0].sections.back().z_mm;
@@ -262,23 +281,32 @@ TEST(NestedStacks, WhatLiesInsideStaysInside) {
         if (std::abs(t.below - t.above) == 1) continue;
         for (std::int32_t v : t.v) {
           const double z = m.result.complex.points[v].z;
-          ASSERT_TRUE(caps == Caps::flat && (z == low || z == high)) << "seed " << seed << ": " << t.below << " meets " << t.above << " at z = " << z;
+          ASSERT_TRUE(caps == Caps::flat && (z == low || z == high))
+              << "seed " << seed << ": " << t.below << " meets " << t.above << " at z = " << z;
         }
       }
     for (const LabelSurface& l : m.check.labels) {
       const bool tube = caps == Caps::flat && (one_file || l.label < levels);
-      EXPECT_EQ(l.genus, !tube ? 0 : one_file ? levels / 2 : 1) << "seed " << seed << " label " << l.label << " of " << levels << (one_file ? " in one file" : "") << (caps == Caps::flat ? " flat" : " round") << " per gap " << per_gap.value_or(-1);
-      EXPECT_EQ(l.components, one_file ? (levels + 1) / 2 : 1) << "seed " << seed << " label " << l.label << " of " << levels << (one_file ? " in one file" : "") << (caps == Caps::flat ? " flat" : " round") << " per gap " << per_gap.value_or(-1);
+      EXPECT_EQ(l.genus, !tube      ? 0
+                         : one_file ? levels / 2
+                                    : 1)
+          << "seed " << seed << " label " << l.label << " of " << levels << (one_file ? " in one file" : "")
+          << (caps == Caps::flat ? " flat" : " round") << " per gap " << per_gap.value_or(-1);
+      EXPECT_EQ(l.components, one_file ? (levels + 1) / 2 : 1)
+          << "seed " << seed << " label " << l.label << " of " << levels << (one_file ? " in one file" : "")
+          << (caps == Caps::flat ? " flat" : " round") << " per gap " << per_gap.value_or(-1);
     }
   }
 }
 
 TEST(NestedStacks, ANestThatGrowsByMoreThanItsWallsStaysOne) {
-  // A ring and a disc in it, drawn as one label; the next ring lies wholly outside of this one, the next disc beneath it.
+  // A ring and a disc in it, drawn as one label; the next ring lies wholly outside of this one, the next disc beneath
+  // it.
   const auto nest = [](double r) { return std::vector{disc(0, 0, r), disc(0, 0, r - 2), disc(0, 0, r - 4)}; };
   for (const bool grows : {true, false})
     for (const int per_gap : {0, 1}) {
-      const Made m = make({file_of(1, every(6, 4), [&](double z) { return nest((z < 9) == grows ? 18 : 24); })}, {}, per_gap, Caps::flat);
+      const Made m = make({file_of(1, every(6, 4), [&](double z) { return nest((z < 9) == grows ? 18 : 24); })}, {},
+                          per_gap, Caps::flat);
       EXPECT_TRUE(m.warnings.empty());
       EXPECT_EQ(surface_of(m.check, 1).genus, 1) << grows << per_gap;
       EXPECT_EQ(surface_of(m.check, 1).components, 2) << grows << per_gap;
@@ -291,10 +319,14 @@ TEST(NestedStacks, ANestThatGrowsByMoreThanItsWallsStaysOne) {
               auto& z = heights.insert({piece, {1e300, -1e300}}).first->second;
               z = {std::min(z[0], m.result.complex.points[v].z), std::max(z[1], m.result.complex.points[v].z)};
             }
-      for (const auto& [piece, z] : heights) EXPECT_EQ(z, (std::array<double, 2>{0, 18})) << "the ring goes on as a ring, the disc as a disc; " << grows << per_gap;
+      for (const auto& [piece, z] : heights)
+        EXPECT_EQ(z, (std::array<double, 2>{0, 18}))
+            << "the ring goes on as a ring, the disc as a disc; " << grows << per_gap;
     }
   // Where the levels are not the same, what overlaps goes on: a ring and the disc in it, both beneath one solid.
-  const Made joined = make({file_of(1, every(6, 4), [&](double z) { return z < 9 ? nest(18) : std::vector{disc(0, 0, 17)}; })}, {}, 1, Caps::round);
+  const Made joined =
+      make({file_of(1, every(6, 4), [&](double z) { return z < 9 ? nest(18) : std::vector{disc(0, 0, 17)}; })}, {}, 1,
+           Caps::round);
   EXPECT_EQ(surface_of(joined.check, 1).components, 1);
 }
 
@@ -308,7 +340,8 @@ TEST(DrawnShapes, HaveTheirVolumeGenusAndEnds) {
   const Made ring = make({file_of(1, every(1, 11, -5), lying)});
   EXPECT_EQ(surface_of(ring.check, 1).genus, 1);
   EXPECT_EQ(surface_of(ring.check, 1).components, 1);
-  const double beyond = 2 * (r * r * std::acos(5 / r) - 5 * std::sqrt(r * r - 25));  // of its cross-section: plane cuts end on the last one
+  // of its cross-section: plane cuts end on the last one
+  const double beyond = 2 * (r * r * std::acos(5 / r) - 5 * std::sqrt(r * r - 25));
   EXPECT_NEAR(ring.volume(1), 2 * M_PI * R * (M_PI * r * r - beyond), 0.01 * ring.volume(1));
   const auto standing = [&](double z) {  // axis along y: sections of a torus about it
     std::vector<ContourPolygon> out;
@@ -317,17 +350,25 @@ TEST(DrawnShapes, HaveTheirVolumeGenusAndEnds) {
     const int n = 60;
     const bool split = std::abs(z) < R - r;
     const double t0 = std::abs(z) > R ? std::sqrt(std::max(0.0, r * r - (std::abs(z) - R) * (std::abs(z) - R))) : r;
-    const auto outer = [&](double y) { return std::sqrt(std::max(0.0, std::pow(R + std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z)); };
-    const auto inner = [&](double y) { return std::sqrt(std::max(0.0, std::pow(R - std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z)); };
+    const auto outer = [&](double y) {
+      return std::sqrt(std::max(0.0, std::pow(R + std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z));
+    };
+    const auto inner = [&](double y) {
+      return std::sqrt(std::max(0.0, std::pow(R - std::sqrt(std::max(0.0, r * r - y * y)), 2) - z * z));
+    };
     if (!split) {
-      for (int i = 0; i < n; ++i) upper.points.push_back({outer(-t0 * std::cos(M_PI * i / n)), -t0 * std::cos(M_PI * i / n)});
-      for (int i = 0; i < n; ++i) upper.points.push_back({-outer(t0 * std::cos(M_PI * i / n)), t0 * std::cos(M_PI * i / n)});
+      for (int i = 0; i < n; ++i)
+        upper.points.push_back({outer(-t0 * std::cos(M_PI * i / n)), -t0 * std::cos(M_PI * i / n)});
+      for (int i = 0; i < n; ++i)
+        upper.points.push_back({-outer(t0 * std::cos(M_PI * i / n)), t0 * std::cos(M_PI * i / n)});
       return std::vector{upper};
     }
     for (double side : {1.0, -1.0}) {
       ContourPolygon p;
-      for (int i = 0; i < n; ++i) p.points.push_back({side * outer(-r * std::cos(M_PI * i / n)), -r * std::cos(M_PI * i / n)});
-      for (int i = 0; i < n; ++i) p.points.push_back({side * inner(r * std::cos(M_PI * i / n)), r * std::cos(M_PI * i / n)});
+      for (int i = 0; i < n; ++i)
+        p.points.push_back({side * outer(-r * std::cos(M_PI * i / n)), -r * std::cos(M_PI * i / n)});
+      for (int i = 0; i < n; ++i)
+        p.points.push_back({side * inner(r * std::cos(M_PI * i / n)), r * std::cos(M_PI * i / n)});
       out.push_back(p);
     }
     return out;
@@ -336,7 +377,9 @@ TEST(DrawnShapes, HaveTheirVolumeGenusAndEnds) {
   EXPECT_EQ(surface_of(wheel.check, 1).genus, 1);
   EXPECT_EQ(surface_of(wheel.check, 1).components, 1);
   // A trunk that branches, a cone that ends between sections, a ring that opens.
-  const Made fork = make({file_of(1, every(3, 9), [](double z) { return z < 9 ? std::vector{disc(0, 0, 12)} : std::vector{disc(-5 - 0.5 * z, 0, 6), disc(5 + 0.5 * z, 0, 6)}; })});
+  const Made fork = make({file_of(1, every(3, 9), [](double z) {
+    return z < 9 ? std::vector{disc(0, 0, 12)} : std::vector{disc(-5 - 0.5 * z, 0, 6), disc(5 + 0.5 * z, 0, 6)};
+  })});
   EXPECT_EQ(surface_of(fork.check, 1).genus, 0);
   EXPECT_EQ(surface_of(fork.check, 1).components, 1);
   const Made cone = make({file_of(1, every(4, 5), [](double z) { return std::vector{disc(0, 0, 17 - z)}; }),
@@ -346,8 +389,12 @@ TEST(DrawnShapes, HaveTheirVolumeGenusAndEnds) {
   const auto opening = [](double z) {
     if (z < 9) return std::vector{disc(0, 0, 20), disc(0, 0, 12)};
     ContourPolygon c;
-    for (int i = 0; i <= 80; ++i) c.points.push_back({20 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 20 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
-    for (int i = 80; i >= 0; --i) c.points.push_back({12 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 12 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
+    for (int i = 0; i <= 80; ++i)
+      c.points.push_back(
+          {20 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 20 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
+    for (int i = 80; i >= 0; --i)
+      c.points.push_back(
+          {12 * std::cos(0.4 + (2 * M_PI - 0.8) * i / 80), 12 * std::sin(0.4 + (2 * M_PI - 0.8) * i / 80)});
     return std::vector{c};
   };
   const Made open = make({file_of(1, every(3, 7), opening)});

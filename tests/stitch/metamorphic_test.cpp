@@ -15,9 +15,10 @@ using namespace testing_support;
 bool same_bytes(const InterfaceComplex& a, const InterfaceComplex& b) {
   return a.points.size() == b.points.size() && a.triangles.size() == b.triangles.size() &&
          std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0 &&
-         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), [](const InterfaceTriangle& s, const InterfaceTriangle& t) {
-           return s.v == t.v && s.below == t.below && s.above == t.above;
-         });
+         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(),
+                    [](const InterfaceTriangle& s, const InterfaceTriangle& t) {
+                      return s.v == t.v && s.below == t.below && s.above == t.above;
+                    });
 }
 
 class StitchMetamorphic : public ::testing::TestWithParam<int> {
@@ -93,12 +94,16 @@ void expect_mirrors_alike(const LabelVolume& v, double tolerance_rel) {
     const SurfaceCheck b = check_surface(mirrored.complex());
     ASSERT_EQ(a.labels.size(), b.labels.size());
     for (const LabelSurface& l : a.labels)
-      EXPECT_NEAR(surface_of(b, l.label).volume_mm3, l.volume_mm3, tolerance_rel * l.volume_mm3) << "axis " << axis << " label " << l.label;
+      EXPECT_NEAR(surface_of(b, l.label).volume_mm3, l.volume_mm3, tolerance_rel * l.volume_mm3)
+          << "axis " << axis << " label " << l.label;
   }
 }
 
-// In noise a fifth of a label's volume hangs on how ties of the triangulation fall, and they fall differently in a mirror.
-TEST_P(StitchMetamorphic, MirroredStackIsClosedWithTheSameVolumes) { expect_mirrors_alike(volume(), 0.2); }
+// In noise a fifth of a label's volume hangs on how ties of the triangulation fall, and they fall differently in a
+// mirror.
+TEST_P(StitchMetamorphic, MirroredStackIsClosedWithTheSameVolumes) {
+  expect_mirrors_alike(volume(), 0.2);
+}
 
 TEST(StitchMetamorphicSmooth, MirroredOrganKeepsItsVolumes) {
   LabelVolume v;

@@ -26,7 +26,8 @@ HalfedgeMesh shell_of(const InterfaceComplex& complex, Label label, std::size_t&
       const auto [it, fresh] = vertex.emplace(id, HalfedgeMesh::VertexHandle());
       if (fresh) {
         const Vec3 p = complex.points[id];
-        it->second = mesh.add_vertex(HalfedgeMesh::Point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)));
+        it->second = mesh.add_vertex(
+            HalfedgeMesh::Point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)));
       }
       v[i] = it->second;
     }
@@ -61,7 +62,8 @@ TEST(LabelShells, AreManifoldAndClosedForOpenMesh) {
     std::size_t boundary = 0;
     for (const auto e : mesh.edges()) boundary += mesh.is_boundary(e) ? 1 : 0;
     EXPECT_EQ(boundary, 0u) << "label " << label;
-    const long euler = static_cast<long>(mesh.n_vertices()) - static_cast<long>(mesh.n_edges()) + static_cast<long>(mesh.n_faces());
+    const long euler =
+        static_cast<long>(mesh.n_vertices()) - static_cast<long>(mesh.n_edges()) + static_cast<long>(mesh.n_faces());
     EXPECT_EQ(euler, surface_of(check, label).euler);
     EXPECT_EQ(euler, label == 1 ? 4 : 2);  // the left organ has a cavity
   }

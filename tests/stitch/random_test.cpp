@@ -1,6 +1,6 @@
-// Random stacks: closed, intersection-free, volumes equal, components one to one, filled by the volume mesher. STACKMESH_RANDOM_STACKS sets
-// their number (default 3,000; the build target random_stacks runs 100,000). A failing label stack is shrunk and
-// stored as text; stored ones live in tests/stitch/corpus and are run first.
+// Random stacks: closed, intersection-free, volumes equal, components one to one, filled by the volume mesher.
+// STACKMESH_RANDOM_STACKS sets their number (default 3,000; the build target random_stacks runs 100,000). A failing
+// label stack is shrunk and stored as text; stored ones live in tests/stitch/corpus and are run first.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -114,8 +114,8 @@ LabelVolume shrink(LabelVolume v, const std::function<bool(const LabelVolume&)>&
 std::string to_text(const LabelVolume& v, std::uint64_t seed) {
   std::ostringstream out;
   out.precision(17);
-  out << "seed " << seed << " size " << v.size[0] << ' ' << v.size[1] << ' ' << v.size[2] << " spacing " << v.spacing_mm[0] << ' '
-      << v.spacing_mm[1] << ' ' << v.spacing_mm[2] << '\n';
+  out << "seed " << seed << " size " << v.size[0] << ' ' << v.size[1] << ' ' << v.size[2] << " spacing "
+      << v.spacing_mm[0] << ' ' << v.spacing_mm[1] << ' ' << v.spacing_mm[2] << '\n';
   for (int k = 0; k < v.size[2]; ++k, out << '\n')
     for (int j = 0; j < v.size[1]; ++j, out << '\n')
       for (int i = 0; i < v.size[0]; ++i) out << v.voxels[v.index(i, j, k)];
@@ -125,10 +125,12 @@ std::string to_text(const LabelVolume& v, std::uint64_t seed) {
 LabelVolume from_text(std::istream& in, std::uint64_t& seed) {
   LabelVolume v;
   std::string word;
-  in >> word >> seed >> word >> v.size[0] >> v.size[1] >> v.size[2] >> word >> v.spacing_mm[0] >> v.spacing_mm[1] >> v.spacing_mm[2];
+  in >> word >> seed >> word >> v.size[0] >> v.size[1] >> v.size[2] >> word >> v.spacing_mm[0] >> v.spacing_mm[1] >>
+      v.spacing_mm[2];
   for (int l = 0; l < 10; ++l) v.labels.push_back({l, ""});
   for (char c; in >> c;) v.voxels.push_back(static_cast<std::uint16_t>(c - '0'));
-  if (v.voxels.size() != static_cast<std::size_t>(v.size[0]) * v.size[1] * v.size[2]) throw std::runtime_error("malformed corpus file");
+  if (v.voxels.size() != static_cast<std::size_t>(v.size[0]) * v.size[1] * v.size[2])
+    throw std::runtime_error("malformed corpus file");
   return v;
 }
 

@@ -29,15 +29,17 @@ TEST_P(RealVolumes, RawAndSimplifiedSurfacesAreClosedAndKeepEveryComponent) {
     fidelity.face_samples = fidelity.surface_samples = 2000;
     for (const LabelFidelity& f : check_fidelity(s.complex(), volume, fidelity)) {
       EXPECT_TRUE(f.components_match) << "label " << f.label << ", simplify " << simplify_px;
-      EXPECT_EQ(f.dice, 1.0) << "label " << f.label << ", simplify " << simplify_px;  // every voxel centre keeps its label
+      // every voxel centre keeps its label
+      EXPECT_EQ(f.dice, 1.0) << "label " << f.label << ", simplify " << simplify_px;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shared, RealVolumes,
-                         ::testing::Values("heart_totalseg/heart.nii.gz", "spinal_cord_thick_sct/mt1_wm1_gm2_labels.nii.gz",
-                                           "spinal_cord_thick_sct/t2_seg-manual_labeled.nii.gz", "ventricles_mri_itksnap/MRIcrop-seg.nii.gz",
-                                           "torso_totalseg/torso_3mm_61labels.nii.gz", "skull_ct_invesalius/bone_mask.nii.gz"));
+INSTANTIATE_TEST_SUITE_P(
+    Shared, RealVolumes,
+    ::testing::Values("heart_totalseg/heart.nii.gz", "spinal_cord_thick_sct/mt1_wm1_gm2_labels.nii.gz",
+                      "spinal_cord_thick_sct/t2_seg-manual_labeled.nii.gz", "ventricles_mri_itksnap/MRIcrop-seg.nii.gz",
+                      "torso_totalseg/torso_3mm_61labels.nii.gz", "skull_ct_invesalius/bone_mask.nii.gz"));
 
 }  // namespace
 }  // namespace stackmesh

@@ -4,9 +4,9 @@
 
 #include "base/error.h"
 #include "checks.h"
+#include "planar/snap_rounding.h"
 #include "random_stacks.h"
 #include "sections/polygons.h"
-#include "planar/snap_rounding.h"
 
 namespace stackmesh {
 namespace {
@@ -19,11 +19,14 @@ StitchOptions with_caps(Caps caps) {
   return o;
 }
 
-ContourPolygon box(double x0, double y0, double x1, double y1) { return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}}; }
+ContourPolygon box(double x0, double y0, double x1, double y1) {
+  return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}};
+}
 
 ContourPolygon disc(double cx, double cy, double r, int n = 48) {
   ContourPolygon p;
-  for (int i = 0; i < n; ++i) p.points.push_back({cx + r * std::cos(2 * M_PI * i / n), cy + r * std::sin(2 * M_PI * i / n)});
+  for (int i = 0; i < n; ++i)
+    p.points.push_back({cx + r * std::cos(2 * M_PI * i / n), cy + r * std::sin(2 * M_PI * i / n)});
   return p;
 }
 
@@ -52,9 +55,11 @@ TEST(StitchToys, BoxOfTwoEqualSectionsHasItsVolumeExactly) {
 }
 
 TEST(StitchToys, FrustumFollowsItsWalls) {
-  const StitchResult r = stitch_contours({label_of(1, {{box(0, 0, 64, 64)}, {box(16, 16, 48, 48)}}, 8)}, with_caps(Caps::flat));
+  const StitchResult r =
+      stitch_contours({label_of(1, {{box(0, 0, 64, 64)}, {box(16, 16, 48, 48)}}, 8)}, with_caps(Caps::flat));
   EXPECT_EQ(defects(r.complex), "");
-  // Prismatoid: (A0 + 4 Am + A1) h / 6, less what the four corners' linear ruling loses (nothing: it is ruled by planes).
+  // Prismatoid: (A0 + 4 Am + A1) h / 6, less what the four corners' linear ruling loses (nothing: it is ruled by
+  // planes).
   EXPECT_NEAR(surface_of(check_surface(r.complex), 1).volume_mm3, (64 * 64 + 4 * 48 * 48 + 32 * 32) * 8 / 6.0, 1e-6);
 }
 
@@ -66,7 +71,8 @@ TEST(StitchToys, LabelsThatContradictEachOtherAreReportedWhereTheyDo) {
     s.z_mm = z;
     const auto add_box = [&](std::int32_t x, Label inside, Label outside) {
       const std::int32_t first = static_cast<std::int32_t>(s.points.size());
-      for (const GridPoint p : {GridPoint{x, 0}, GridPoint{x + 10, 0}, GridPoint{x + 10, 10}, GridPoint{x, 10}}) s.points.push_back(p);
+      for (const GridPoint p : {GridPoint{x, 0}, GridPoint{x + 10, 0}, GridPoint{x + 10, 10}, GridPoint{x, 10}})
+        s.points.push_back(p);
       for (std::int32_t i = 0; i < 4; ++i) s.edges.push_back({first + i, first + (i + 1) % 4, inside, outside});
     };
     add_box(0, 1, 0);
@@ -80,15 +86,17 @@ TEST(StitchToys, LabelsThatContradictEachOtherAreReportedWhereTheyDo) {
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::input);
     EXPECT_NE(e.where().find("z = 2.0"), std::string::npos) << e.what();
-    EXPECT_TRUE(e.where().find("(500") != std::string::npos || e.where().find("(510") != std::string::npos || e.where().find("(10.0") != std::string::npos) << e.what();
+    EXPECT_TRUE(e.where().find("(500") != std::string::npos || e.where().find("(510") != std::string::npos ||
+                e.where().find("(10.0") != std::string::npos)
+        << e.what();
     EXPECT_EQ(e.where().find("(0.0"), std::string::npos) << "the section's first point says nothing: " << e.what();
   }
 }
 
 TEST(StitchToys, NoGrooveUnderALabelThatCoversTwo) {
   // a|b (1, 2) beneath, c (3) above over both.
-  const LabelVolume v = volume_of({{"000000", "011220", "011220", "011220", "000000"},
-                                   {"000000", "033330", "033330", "033330", "000000"}}, 4);
+  const LabelVolume v = volume_of(
+      {{"000000", "011220", "011220", "011220", "000000"}, {"000000", "033330", "033330", "033330", "000000"}}, 4);
   const Stitched s = stitch_volume(v, 0, with_caps(Caps::flat));
   EXPECT_EQ(defects(s.complex()), "");
   // c's underside must not touch the lower section anywhere over the inner part of the a|b contour (x = 3).
@@ -139,12 +147,14 @@ TEST(StitchToys, OnePixelInOneSectionIsKept) {
       EXPECT_NEAR(surface_of(check, 1).volume_mm3, 2.0, 1e-12);  // two roofs of half a voxel each
     }
     for (const Vec3& p : s.complex().points)
-      EXPECT_LE(std::abs(p.z - 2), (caps == Caps::flat ? 1.0 : 1.5) + 1e-12) << "a flat end rises half a gap, a round one three quarters";
+      EXPECT_LE(std::abs(p.z - 2), (caps == Caps::flat ? 1.0 : 1.5) + 1e-12)
+          << "a flat end rises half a gap, a round one three quarters";
   }
 }
 
 TEST(StitchToys, RoundEndsHoldTheirHalfGap) {
-  // A disc, a box, a ring and a single pixel, each in one slice: whatever the roof looks like, it holds what the voxels do.
+  // A disc, a box, a ring and a single pixel, each in one slice: whatever the roof looks like, it holds what the voxels
+  // do.
   const auto with = [](int kind) {
     LabelVolume v;
     v.size = {24, 24, 3};
@@ -154,7 +164,10 @@ TEST(StitchToys, RoundEndsHoldTheirHalfGap) {
     for (int j = 0; j < 24; ++j)
       for (int i = 0; i < 24; ++i) {
         const double r = std::hypot(i - 11.5, j - 11.5);
-        const bool in = kind == 0 ? r < 9 : kind == 1 ? i > 3 && i < 17 && j > 7 && j < 13 : kind == 2 ? r < 10 && r > 6 : i == 9 && j == 9;
+        const bool in = kind == 0   ? r < 9
+                        : kind == 1 ? i > 3 && i < 17 && j > 7 && j < 13
+                        : kind == 2 ? r < 10 && r > 6
+                                    : i == 9 && j == 9;
         v.voxels[v.index(i, j, 1)] = in;
       }
     return v;
@@ -169,7 +182,8 @@ TEST(StitchToys, RoundEndsHoldTheirHalfGap) {
 }
 
 TEST(StitchToys, IslandOverNothingEndsByItself) {
-  const StitchResult r = stitch_contours({label_of(1, {{box(0, 0, 20, 20)}, {box(0, 0, 20, 20), disc(40, 10, 5)}, {box(0, 0, 20, 20)}}, 4)});
+  const StitchResult r = stitch_contours(
+      {label_of(1, {{box(0, 0, 20, 20)}, {box(0, 0, 20, 20), disc(40, 10, 5)}, {box(0, 0, 20, 20)}}, 4)});
   EXPECT_EQ(defects(r.complex), "");
   const SurfaceCheck check = check_surface(r.complex);
   EXPECT_EQ(surface_of(check, 1).components, 2);
@@ -192,14 +206,16 @@ TEST(StitchToys, FigureEightOverTwoDiscsIsOnePieceWithoutHandles) {
 }
 
 TEST(StitchToys, HoleThatClosesLeavesACup) {
-  const StitchResult r = stitch_contours({label_of(1, {{disc(0, 0, 10), disc(0, 0, 5)}, {disc(0, 0, 10), disc(0, 0, 3)}, {disc(0, 0, 10)}}, 4)});
+  const StitchResult r = stitch_contours(
+      {label_of(1, {{disc(0, 0, 10), disc(0, 0, 5)}, {disc(0, 0, 10), disc(0, 0, 3)}, {disc(0, 0, 10)}}, 4)});
   EXPECT_EQ(defects(r.complex), "");
   EXPECT_EQ(surface_of(check_surface(r.complex), 1).euler, 2);
 }
 
 TEST(StitchToys, FlatAndRoundLabelsEndSideBySide) {
   const LabelVolume v = volume_of({{"0000000", "0111220", "0111220", "0111220", "0000000"},
-                                   {"0000000", "0111220", "0111220", "0111220", "0000000"}}, 2);
+                                   {"0000000", "0111220", "0111220", "0111220", "0000000"}},
+                                  2);
   StitchOptions o = with_caps(Caps::round);
   o.label_caps[1] = {Caps::flat, Caps::flat};
   const Stitched s = stitch_volume(v, 0, o);

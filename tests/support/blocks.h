@@ -19,7 +19,9 @@ using stackmesh::TetMesh;
 using stackmesh::Vec3;
 
 /// nx * ny * nz cells of six tets each; label(i, j, k) 0 leaves a cell out.
-inline TetMesh block(int nx, int ny, int nz, Vec3 cell, const std::function<Label(int, int, int)>& label = [](int, int, int) { return 1; }) {
+inline TetMesh block(
+    int nx, int ny, int nz, Vec3 cell,
+    const std::function<Label(int, int, int)>& label = [](int, int, int) { return 1; }) {
   TetMesh mesh;
   mesh.space = stackmesh::Space::lps;
   const auto id = [=](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
@@ -51,7 +53,8 @@ inline void disturb(TetMesh& mesh, int nx, int ny, int nz, Vec3 cell) {
     for (int j = 1; j < ny; ++j)
       for (int i = 1; i < nx; ++i) {
         const int v = (k * (ny + 1) + j) * (nx + 1) + i;
-        mesh.points[v] = mesh.points[v] + 0.2 * Vec3{cell.x * std::sin(3.0 * v), cell.y * std::sin(5.0 * v + 1), cell.z * std::sin(7.0 * v + 2)};
+        mesh.points[v] = mesh.points[v] + 0.2 * Vec3{cell.x * std::sin(3.0 * v), cell.y * std::sin(5.0 * v + 1),
+                                                     cell.z * std::sin(7.0 * v + 2)};
       }
 }
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
-#include "sections/extract.h"
 #include "model/complex.h"
+#include "sections/extract.h"
 #include "stitch/stitch.h"
 #include "validate/check_surface.h"
 #include "volume/fill_volume.h"

@@ -28,10 +28,11 @@ class NrrdInMemory {
     const int file = ::mkstemps(path_.data(), 5);
     std::FILE* f = file < 0 ? nullptr : ::fdopen(file, "wb");
     if (f == nullptr) fail_internal("a file in memory cannot be made", path_);
-    std::fprintf(f,
-                 "NRRD0004\ntype: uint16\nendian: little\ndimension: 3\nspace: left-posterior-superior\nsizes: %d %d %d\n"
-                 "space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\nspace origin: (0,0,0)\nencoding: raw\n\n",
-                 v.size[0], v.size[1], v.size[2], v.spacing_mm[0], v.spacing_mm[1], v.spacing_mm[2]);
+    std::fprintf(
+        f,
+        "NRRD0004\ntype: uint16\nendian: little\ndimension: 3\nspace: left-posterior-superior\nsizes: %d %d %d\n"
+        "space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\nspace origin: (0,0,0)\nencoding: raw\n\n",
+        v.size[0], v.size[1], v.size[2], v.spacing_mm[0], v.spacing_mm[1], v.spacing_mm[2]);
     for (const std::uint16_t k : v.voxels) {
       const auto label = static_cast<std::uint16_t>(v.labels[k].number);
       std::fputc(label & 255, f), std::fputc(label >> 8, f);
@@ -72,7 +73,8 @@ DefaultRun run_at_defaults(const LabelVolume& volume, const std::string& worker)
   }
   out.cpu_s = thread_cpu_s() - start;
   if (!out.problem.empty()) {
-    if (const std::size_t at = out.problem.find(file.path()); at != std::string::npos) out.problem.replace(at, file.path().size(), "the stack");
+    if (const std::size_t at = out.problem.find(file.path()); at != std::string::npos)
+      out.problem.replace(at, file.path().size(), "the stack");
     return out;
   }
   // What a strict run has let through, once more.
@@ -91,7 +93,8 @@ DefaultRun run_at_defaults(const LabelVolume& volume, const std::string& worker)
   for (std::size_t k = 1; k < volume.labels.size(); ++k) {
     bool there = false;
     for (const std::uint16_t v : volume.voxels) there = there || v == k;
-    if (there && surface[volume.labels[k].number] == 0) wrong("label " + std::to_string(volume.labels[k].number) + " is gone");
+    if (there && surface[volume.labels[k].number] == 0)
+      wrong("label " + std::to_string(volume.labels[k].number) + " is gone");
   }
   return out;
 }

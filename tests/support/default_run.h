@@ -13,8 +13,8 @@ struct DefaultRun {
   double cpu_s = 0;     ///< of all threads that run in this thread's name
 };
 
-/// A label volume through the whole of `stackmesh surface` (or `mesh`, where a worker is given): a file of it in memory is read, made into sections, stitched, enhanced,
-/// checked. Nothing is written. One thread.
+/// A label volume through the whole of `stackmesh surface` (or `mesh`, where a worker is given): a file of it in memory
+/// is read, made into sections, stitched, enhanced, checked. Nothing is written. One thread.
 /// @param worker a program that answers the volume mesher's call; "": the surface only
 DefaultRun run_at_defaults(const LabelVolume& volume, const std::string& worker = "");
 

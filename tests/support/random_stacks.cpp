@@ -12,8 +12,12 @@ namespace {
 
 using Random = std::mt19937_64;
 
-int below(Random& r, int n) { return static_cast<int>(r() % static_cast<std::uint64_t>(n)); }
-double unit(Random& r) { return static_cast<double>(r() >> 11) * 0x1p-53; }
+int below(Random& r, int n) {
+  return static_cast<int>(r() % static_cast<std::uint64_t>(n));
+}
+double unit(Random& r) {
+  return static_cast<double>(r() >> 11) * 0x1p-53;
+}
 
 LabelVolume blank(Random& r, int labels) {
   LabelVolume v;
@@ -65,9 +69,9 @@ void near_copies(LabelVolume& v, Random& r, int labels) {
   for (int k = 0; k < v.size[2]; ++k)
     for (int j = 0; j < v.size[1]; ++j)
       for (int i = 0; i < v.size[0]; ++i)
-        v.voxels[v.index(i, j, k)] = k > 0 && unit(r) < 0.95 ? v.voxels[v.index(i, j, k - 1)]
-                                     : i > 0 && unit(r) < 0.7  ? v.voxels[v.index(i - 1, j, k)]
-                                                               : static_cast<std::uint16_t>(below(r, labels + 1));
+        v.voxels[v.index(i, j, k)] = k > 0 && unit(r) < 0.95  ? v.voxels[v.index(i, j, k - 1)]
+                                     : i > 0 && unit(r) < 0.7 ? v.voxels[v.index(i - 1, j, k)]
+                                                              : static_cast<std::uint16_t>(below(r, labels + 1));
 }
 
 void boxes(LabelVolume& v, Random& r, int labels) {
@@ -93,7 +97,8 @@ void tubes(LabelVolume& v, Random& r, int labels) {
       for (int j = 0; j < v.size[1]; ++j)
         for (int i = 0; i < v.size[0]; ++i) {
           const double d = std::hypot(i - x, j - y);
-          if (d < radius && !(hollow == 0 && d < 0.4 * radius)) v.voxels[v.index(i, j, k)] = static_cast<std::uint16_t>(label);
+          if (d < radius && !(hollow == 0 && d < 0.4 * radius))
+            v.voxels[v.index(i, j, k)] = static_cast<std::uint16_t>(label);
         }
   }
 }
@@ -102,7 +107,8 @@ void touches(LabelVolume& v, Random& r, int labels) {
   const int period = 1 + below(r, 2), shift = below(r, 2);
   fill(v, [&](int i, int j, int k) {
     const bool on = ((i / period + j / period + k * shift) & 1) != 0;
-    return on ? 1 + (labels > 1 ? (i / (2 * period) + k) % labels : 0) : (labels > 2 && (i + j + k) % 5 == 0 ? labels : 0);
+    return on ? 1 + (labels > 1 ? (i / (2 * period) + k) % labels : 0)
+              : (labels > 2 && (i + j + k) % 5 == 0 ? labels : 0);
   });
 }
 
@@ -113,12 +119,23 @@ LabelVolume random_volume(std::uint64_t seed) {
   const int labels = 1 + below(r, 8);
   LabelVolume v = blank(r, labels);
   switch (seed % 6) {
-    case 0: blobs(v, r, labels); break;
-    case 1: noise(v, r, labels); break;
-    case 2: near_copies(v, r, labels); break;
-    case 3: boxes(v, r, labels); break;
-    case 4: tubes(v, r, labels); break;
-    default: touches(v, r, labels);
+    case 0:
+      blobs(v, r, labels);
+      break;
+    case 1:
+      noise(v, r, labels);
+      break;
+    case 2:
+      near_copies(v, r, labels);
+      break;
+    case 3:
+      boxes(v, r, labels);
+      break;
+    case 4:
+      tubes(v, r, labels);
+      break;
+    default:
+      touches(v, r, labels);
   }
   if (below(r, 5) == 0) {  // an empty section
     const int k = below(r, v.size[2]);
@@ -189,7 +206,8 @@ LabelVolume volume_of_bytes(const std::uint8_t* data, std::size_t size) {
 
 LabelVolume volume_of(const std::vector<std::vector<const char*>>& slices, double gap_mm) {
   LabelVolume v;
-  v.size = {static_cast<int>(std::string(slices[0][0]).size()), static_cast<int>(slices[0].size()), static_cast<int>(slices.size())};
+  v.size = {static_cast<int>(std::string(slices[0][0]).size()), static_cast<int>(slices[0].size()),
+            static_cast<int>(slices.size())};
   v.spacing_mm = {1, 1, gap_mm};
   std::set<int> numbers = {0};
   for (const auto& s : slices)
@@ -200,7 +218,8 @@ LabelVolume volume_of(const std::vector<std::vector<const char*>>& slices, doubl
   for (const auto& s : slices)
     for (const char* row : s)
       for (const char* c = row; *c; ++c)
-        v.voxels.push_back(static_cast<std::uint16_t>(std::lower_bound(order.begin(), order.end(), *c - '0') - order.begin()));
+        v.voxels.push_back(
+            static_cast<std::uint16_t>(std::lower_bound(order.begin(), order.end(), *c - '0') - order.begin()));
   v.kind = "test";
   return v;
 }

@@ -17,8 +17,9 @@ LabelVolume random_volume(std::uint64_t seed);
 /// of an edge, also exact copies.
 std::vector<LabelContours> random_contours(std::uint64_t seed);
 
-/// A volume of 2 to 7 voxels along each axis from any bytes, for the fuzzer: three bytes of sizes, one of labels (1 to 7), three of spacings (0.5 to 4 mm, in
-/// steps, mostly 1), then two voxels a byte; what is not there is background. One voxel at least is labelled.
+/// A volume of 2 to 7 voxels along each axis from any bytes, for the fuzzer: three bytes of sizes, one of labels (1 to
+/// 7), three of spacings (0.5 to 4 mm, in steps, mostly 1), then two voxels a byte; what is not there is background.
+/// One voxel at least is labelled.
 LabelVolume volume_of_bytes(const std::uint8_t* data, std::size_t size);
 
 /// A volume from a list of slices, each a list of rows of digits ("0110"); spacing 1 x 1 x gap mm.

@@ -22,10 +22,11 @@ int run(const std::string& command) {
 
 void agrees(const std::string& surface, const std::string& labels, const std::string& label, const std::string& space) {
   const std::string report = folder() + "/agreement.json";
-  const int code = run(std::string(STACKMESH_PROGRAM) + " validate " + surface + " --against " + labels + " --label " + label + " --as-stored --mesh-space " + space + " --report " + report +
-                       " --quiet 2>/dev/null");
+  const int code = run(std::string(STACKMESH_PROGRAM) + " validate " + surface + " --against " + labels + " --label " +
+                       label + " --as-stored --mesh-space " + space + " --report " + report + " --quiet 2>/dev/null");
   ASSERT_TRUE(code == 0 || code == 4 || code == 6) << code;
-  const int verdict = run("/usr/bin/python3 " STACKMESH_SOURCE_DIR "/tests/python/judge_agreement.py " + surface + " " + labels + " " + label + " " + report + " --space " + space);
+  const int verdict = run("/usr/bin/python3 " STACKMESH_SOURCE_DIR "/tests/python/judge_agreement.py " + surface + " " +
+                          labels + " " + label + " " + report + " --space " + space);
   if (verdict == 77) GTEST_SKIP() << "python3-vtk9 or python3-nibabel is missing";
   EXPECT_EQ(verdict, 0);
 }

@@ -34,8 +34,7 @@ bool meet_by_definition(const std::vector<Vec3>& p, const Corners& s, const Corn
     const auto* point = boost::get<Exact::Point_3>(&*common);
     return !(point && *point == exact(p[shared[0]]));
   }
-  return boost::get<Exact::Segment_3>(&*common) ==
-         nullptr;  // convex, holds the edge: a segment is the edge itself
+  return boost::get<Exact::Segment_3>(&*common) == nullptr;  // convex, holds the edge: a segment is the edge itself
 }
 
 bool has_area(const std::vector<Vec3>& p, const Corners& t) {
@@ -54,8 +53,7 @@ std::size_t compare(const InterfaceComplex& c) {
       continue;
     }
     for (std::int32_t j = i + 1; j < n; ++j)
-      if (has_area(c.points, c.triangles[j].v) &&
-          meet_by_definition(c.points, c.triangles[i].v, c.triangles[j].v))
+      if (has_area(c.points, c.triangles[j].v) && meet_by_definition(c.points, c.triangles[i].v, c.triangles[j].v))
         expected.push_back({i, j});
   }
   const SurfaceCheck check = check_surface(c, {1, 1000});
@@ -71,8 +69,7 @@ std::size_t random_soups(int soups, int points, int triangles, unsigned seed, Co
   std::size_t met = 0;
   for (int s = 0; s < soups && !testing::Test::HasFailure(); ++s) {
     InterfaceComplex c;
-    for (int i = 0; i < points; ++i)
-      c.points.push_back({coordinate(random), coordinate(random), coordinate(random)});
+    for (int i = 0; i < points; ++i) c.points.push_back({coordinate(random), coordinate(random), coordinate(random)});
     for (int i = 0; i < triangles; ++i) {
       Corners v;
       for (auto& x : v) x = static_cast<std::int32_t>(random() % points);
@@ -133,15 +130,13 @@ TEST(TriangleContact, GapOfATrillionthIsNoContact) {
 }
 
 TEST(TriangleContact, SharedCornerThatCrossesIsContact) {
-  const std::vector<Vec3> p = {{0, 0, 0},   {2, 0, 0},    {0, 2, 0},  {1, 1, -1},
-                               {1, 0.5, 1}, {-1, -1, -1}, {-1, -1, 1}};
+  const std::vector<Vec3> p = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 1, -1}, {1, 0.5, 1}, {-1, -1, -1}, {-1, -1, 1}};
   EXPECT_TRUE(collide(p, {0, 1, 2}, {0, 3, 4}));
   EXPECT_FALSE(collide(p, {0, 1, 2}, {0, 5, 6}));
 }
 
 TEST(TriangleContact, SharedEdgeMeetsOnlyWhenFoldedFlat) {
-  const std::vector<Vec3> p = {{0, 0, 0},  {1, 0, 0},       {0, 1, 0}, {1, 1, 0},
-                               {1, -1, 0}, {0.5, 1, 1e-12}, {0, 1, 0}};
+  const std::vector<Vec3> p = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, -1, 0}, {0.5, 1, 1e-12}, {0, 1, 0}};
   EXPECT_TRUE(collide(p, {0, 1, 2}, {1, 0, 3}));
   EXPECT_FALSE(collide(p, {0, 1, 2}, {1, 0, 4}));
   EXPECT_FALSE(collide(p, {0, 1, 2}, {1, 0, 5}));
@@ -152,9 +147,8 @@ TEST(TriangleContact, SharedEdgeMeetsOnlyWhenFoldedFlat) {
 TEST(Exact, OrientationIsRightWhereDoublesAreNot) {
   const Vec3 a{0.1, 0.1, 0.1}, b{0.2, 0.2, 0.2 + 0x1p-54}, c{0.4, 0.4, 0.4}, d{1, 7, 3};
   using P = Exact::Point_3;
-  EXPECT_EQ(exact_orientation(a, b, c, d),
-            static_cast<int>(
-                CGAL::orientation(P(a.x, a.y, a.z), P(b.x, b.y, b.z), P(c.x, c.y, c.z), P(d.x, d.y, d.z))));
+  EXPECT_EQ(exact_orientation(a, b, c, d), static_cast<int>(CGAL::orientation(P(a.x, a.y, a.z), P(b.x, b.y, b.z),
+                                                                              P(c.x, c.y, c.z), P(d.x, d.y, d.z))));
   EXPECT_EQ(exact_orientation({0, 0, 0}, {1e-120, 0, 0}, {0, 1e-120, 0}, {0, 0, 1e-120}), 1);
   EXPECT_TRUE(exact_collinear({0, 0, 0}, {1, 1, 1}, {3, 3, 3}));
   EXPECT_FALSE(exact_collinear({0, 0, 0}, {1, 1, 1}, {3, 3, 3 + 0x1p-51}));

@@ -24,9 +24,8 @@ void tilt(LabelVolume& v, bool mirrored) {
   v.spacing_mm = {0.8, 1.1, 2.5};
   v.origin_mm = {-100, 37.5, 1200};
   const double a = 0.3, b = 0.7;
-  v.axes = {Vec3{std::cos(a), std::sin(a), 0},
-            Vec3{-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)},
-            {}};
+  v.axes = {
+      Vec3{std::cos(a), std::sin(a), 0}, Vec3{-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)}, {}};
   v.axes[2] = (mirrored ? -1.0 : 1.0) * cross(v.axes[0], v.axes[1]);
 }
 
@@ -121,8 +120,8 @@ TEST(CheckFidelity, DistancesAgreeWithAllPairs) {
             const auto at = [&](int n) {
               return Kernel::Point_3(c.points[t.v[n]].x, c.points[t.v[n]].y, c.points[t.v[n]].z);
             };
-            best = std::min(best, CGAL::squared_distance(Kernel::Point_3(p.x, p.y, p.z),
-                                                         Kernel::Triangle_3(at(0), at(1), at(2))));
+            best = std::min(
+                best, CGAL::squared_distance(Kernel::Point_3(p.x, p.y, p.z), Kernel::Triangle_3(at(0), at(1), at(2))));
           }
           expected.push_back(std::sqrt(best));
         }
@@ -133,8 +132,7 @@ TEST(CheckFidelity, DistancesAgreeWithAllPairs) {
   EXPECT_EQ(l.distance_samples, expected.size());
   EXPECT_NEAR(l.distance_mm.mean, mean, 1e-9);
   EXPECT_NEAR(l.distance_mm.max, expected.back(), 1e-9);
-  EXPECT_NEAR(l.distance_mm.p95, expected[static_cast<std::size_t>(std::ceil(0.95 * expected.size())) - 1],
-              1e-9);
+  EXPECT_NEAR(l.distance_mm.p95, expected[static_cast<std::size_t>(std::ceil(0.95 * expected.size())) - 1], 1e-9);
 }
 
 TEST(CheckFidelity, SwappedLabelsShareNothing) {

@@ -1,5 +1,5 @@
-// The figures that let a smooth surface be smooth: distance outside of the band between voxel centres, voxel centres in the wrong
-// label, bends; and what the verdicts make of them.
+// The figures that let a smooth surface be smooth: distance outside of the band between voxel centres, voxel centres in
+// the wrong label, bends; and what the verdicts make of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,12 +31,14 @@ LabelVolume half_full(bool oblique) {
   v.spacing_mm = {0.8, 1.1, 2.5};
   v.origin_mm = {-100, 37.5, 1200};
   const double a = 0.3, b = 0.7;
-  v.axes = {Vec3{std::cos(a), std::sin(a), 0}, Vec3{-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)}, {}};
+  v.axes = {
+      Vec3{std::cos(a), std::sin(a), 0}, Vec3{-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)}, {}};
   v.axes[2] = cross(v.axes[0], v.axes[1]);
   return v;
 }
 
-/// A sheet of two triangles in the middle of the grid, far from its borders, `at` voxels above the face between full and empty at its one side, `to` at the other.
+/// A sheet of two triangles in the middle of the grid, far from its borders, `at` voxels above the face between full
+/// and empty at its one side, `to` at the other.
 InterfaceComplex sheet(const LabelVolume& v, double at, double to) {
   InterfaceComplex c;
   c.points = {v.world(5, 5, 9.5 + at), v.world(14, 5, 9.5 + to), v.world(14, 14, 9.5 + to), v.world(5, 14, 9.5 + at)};
@@ -70,7 +72,8 @@ TEST(BandDistance, APlaneIsOutsideByWhatItLeavesTheCellsBy) {
 }
 
 TEST(BandDistance, TheVoxelsOwnFacesAndASmoothCutAreBothPerfect) {
-  // A plane that climbs by a voxel in seven: its voxels are a staircase, which lies in the band as the plane itself does.
+  // A plane that climbs by a voxel in seven: its voxels are a staircase, which lies in the band as the plane itself
+  // does.
   LabelVolume v = empty_volume(30, 12, 12, 1);
   for (int k = 0; k < 12; ++k)
     for (int j = 0; j < 12; ++j)
@@ -93,7 +96,8 @@ struct Cell {
 std::vector<Cell> cells_of(const LabelVolume& v, int label) {
   std::vector<Cell> cells;
   const auto is = [&](int i, int j, int k) {
-    return i >= 0 && j >= 0 && k >= 0 && i < v.size[0] && j < v.size[1] && k < v.size[2] && v.voxels[v.index(i, j, k)] == label;
+    return i >= 0 && j >= 0 && k >= 0 && i < v.size[0] && j < v.size[1] && k < v.size[2] &&
+           v.voxels[v.index(i, j, k)] == label;
   };
   for (int k = -1; k < v.size[2]; ++k)
     for (int j = -1; j < v.size[1]; ++j)
@@ -107,7 +111,8 @@ std::vector<Cell> cells_of(const LabelVolume& v, int label) {
 double distance_to(const std::vector<Cell>& cells, const Vec3& p) {
   double best = 1e300;
   for (const Cell& c : cells) {
-    const double x = std::max({0.0, c.low.x - p.x, p.x - c.high.x}), y = std::max({0.0, c.low.y - p.y, p.y - c.high.y}), z = std::max({0.0, c.low.z - p.z, p.z - c.high.z});
+    const double x = std::max({0.0, c.low.x - p.x, p.x - c.high.x}), y = std::max({0.0, c.low.y - p.y, p.y - c.high.y}),
+                 z = std::max({0.0, c.low.z - p.z, p.z - c.high.z});
     best = std::min(best, x * x + y * y + z * z);
   }
   return std::sqrt(best);
@@ -145,8 +150,11 @@ TEST(Components, OfAVoxelThatIsThinMayLieALittleBesideIt) {
   v.spacing_mm = {1, 1, 0.2};
   v.voxels[v.index(3, 3, 3)] = 1;
   const Vec3 middle = v.world(3, 3, 3);
-  const auto at = [&](double beside_mm) { return check_fidelity(icosphere(0.09, 2, 1, {middle.x, middle.y, middle.z + beside_mm}), v, along(2))[0]; };
-  for (const double beside : {0.0, 0.2, -0.55}) {  // the voxel ends 0.1 above its centre; half of its longest side beyond that still is beside it
+  const auto at = [&](double beside_mm) {
+    return check_fidelity(icosphere(0.09, 2, 1, {middle.x, middle.y, middle.z + beside_mm}), v, along(2))[0];
+  };
+  // the voxel ends 0.1 above its centre; half of its longest side beyond that still is beside it
+  for (const double beside : {0.0, 0.2, -0.55}) {
     EXPECT_EQ(at(beside).missing_components, 0) << beside;
     EXPECT_TRUE(at(beside).components_match) << beside;
   }
@@ -167,7 +175,8 @@ TEST(BandDistance, OfLabelsStoredFinerIsThatOfTheirBlocks) {
   fine.origin_mm = {-0.5, -1, 0};
   for (int k = 0; k < 7; ++k)
     for (int j = 0; j < 15; ++j)
-      for (int i = 0; i < 12; ++i) fine.voxels[fine.index(i, j, k)] = coarse.voxels[coarse.index(i / times[0], j / times[1], k / times[2])];
+      for (int i = 0; i < 12; ++i)
+        fine.voxels[fine.index(i, j, k)] = coarse.voxels[coarse.index(i / times[0], j / times[1], k / times[2])];
   InterfaceComplex ball = icosphere(9, 4, 1, {5, 6, 5});
   const InterfaceComplex other = icosphere(7, 4, 2, {-2, 6, 5});
   for (const InterfaceTriangle& t : other.triangles) {

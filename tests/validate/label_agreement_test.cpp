@@ -1,4 +1,6 @@
 // Complexes without a crossing whose labels contradict each other, and the guard that lets none come about.
+#include "validate/label_agreement.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,19 +8,23 @@
 #include "enhance/smoothing.h"
 #include "shapes.h"
 #include "validate/check_surface.h"
-#include "validate/label_agreement.h"
 #include "validate/self_intersections.h"
 
 using namespace stackmesh;
 
 namespace {
 
-/// Two tets that share the face A B C: label 1 with D, label 2 with E; C turned about the edge A B by an angle, D at 0 degrees, E at 80.
+/// Two tets that share the face A B C: label 1 with D, label 2 with E; C turned about the edge A B by an angle, D at 0
+/// degrees, E at 80.
 InterfaceComplex book(double degrees) {
-  const auto at = [](double r, double angle) { return Vec3{r * std::cos(angle * M_PI / 180), r * std::sin(angle * M_PI / 180), 0.5}; };
+  const auto at = [](double r, double angle) {
+    return Vec3{r * std::cos(angle * M_PI / 180), r * std::sin(angle * M_PI / 180), 0.5};
+  };
   InterfaceComplex c;
   c.points = {{0, 0, 0}, {0, 0, 1}, at(1, degrees), at(0.5, 0), at(1, 80)};
-  const auto add = [&](std::int32_t x, std::int32_t y, std::int32_t z, Label below, Label above) { c.triangles.push_back({{x, y, z}, below, above}); };
+  const auto add = [&](std::int32_t x, std::int32_t y, std::int32_t z, Label below, Label above) {
+    c.triangles.push_back({{x, y, z}, below, above});
+  };
   // Outwards for C between D and E.
   add(0, 3, 1, 1, 0), add(1, 3, 2, 1, 0), add(0, 2, 3, 1, 0);
   add(0, 1, 4, 2, 0), add(1, 2, 4, 2, 0), add(0, 4, 2, 2, 0);

@@ -1,4 +1,5 @@
-// Defects planted in a good mesh: each must be found, named and located; and perfect meshes of shapes with known figures.
+// Defects planted in a good mesh: each must be found, named and located; and perfect meshes of shapes with known
+// figures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@ using namespace test;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// An ellipsoid of label 1 with a ball of label 2 set into its side, and a second ball of label 2 apart; axes turned, so
-/// that LPS and RAS differ.
+/// An ellipsoid of label 1 with a ball of label 2 set into its side, and a second ball of label 2 apart; axes turned,
+/// so that LPS and RAS differ.
 LabelVolume phantom() {
   LabelVolume v = empty_volume(64, 52, 26, 2);
   v.spacing_mm = {1, 1, 2};
@@ -44,7 +45,8 @@ class Referee : public ::testing::Test {
   static void SetUpTestSuite() {
     labels_ = write_volume_file("phantom.nrrd", phantom());
     const std::string base = folder() + "/good";
-    const std::string command = std::string(STACKMESH_PROGRAM) + " mesh " + labels_ + " --quiet -o " + base + ".vtu -o " + base + ".vtp";
+    const std::string command =
+        std::string(STACKMESH_PROGRAM) + " mesh " + labels_ + " --quiet -o " + base + ".vtu -o " + base + ".vtp";
     ASSERT_EQ(std::system(command.c_str()), 0);
     tets_ = tet_mesh_of(read_mesh(base + ".vtu"));
     const MeshFile s = read_mesh(base + ".vtp");
@@ -62,8 +64,12 @@ class Referee : public ::testing::Test {
     const auto progress = make_terminal_monitor(ProgressMode::none);
     return run_validate(o, *progress)[0];
   }
-  static RunReport judged(const InterfaceComplex& surface, const std::string& name) { return judged(options(write_mesh_file(name, surface))); }
-  static RunReport judged(const TetMesh& mesh, const std::string& name) { return judged(options(write_mesh_file(name, mesh))); }
+  static RunReport judged(const InterfaceComplex& surface, const std::string& name) {
+    return judged(options(write_mesh_file(name, surface)));
+  }
+  static RunReport judged(const TetMesh& mesh, const std::string& name) {
+    return judged(options(write_mesh_file(name, mesh)));
+  }
 
   static const Verdict& verdict(const RunReport& r, const std::string& id) {
     static const Verdict none;
@@ -90,7 +96,9 @@ class Referee : public ::testing::Test {
     return (1.0 / 3) * (c.points[v[0]] + c.points[v[1]] + c.points[v[2]]);
   }
   static int section_of(const Vec3& p) { return static_cast<int>(std::lround((p.z - 100) / 2)); }
-  static void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LT(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z; }
+  static void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+    EXPECT_LT(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z;
+  }
 
   /// A triangle of label 1 towards the background.
   static std::size_t some_triangle() {
@@ -110,7 +118,8 @@ InterfaceComplex Referee::surface_;
 TEST_F(Referee, PassesAGoodMesh) {
   for (const RunReport& r : {judged(tets_, "ok.vtu"), judged(surface_, "ok.vtp")}) {
     EXPECT_EQ(exit_code(r.verdicts), 0);
-    for (const char* id : {"closed", "intersections", "components", "position", "fidelity"}) EXPECT_EQ(verdict(r, id).status, Status::pass) << id << ": " << verdict(r, id).figure;
+    for (const char* id : {"closed", "intersections", "components", "position", "fidelity"})
+      EXPECT_EQ(verdict(r, id).status, Status::pass) << id << ": " << verdict(r, id).figure;
     ASSERT_EQ(r.labels.size(), 2u);
     EXPECT_EQ(r.labels[1].components, 2);
     EXPECT_EQ(r.labels[0].genus, 0);
@@ -157,8 +166,10 @@ TEST_F(Referee, FindsTwoCrossingSheets) {
   const std::size_t t = some_triangle();
   const Vec3 where = middle(c, t);
   const std::int32_t n = static_cast<std::int32_t>(c.points.size());
-  for (const Vec3& p : {Vec3{-3, -3, -3}, Vec3{3, -2, -3}, Vec3{0, 3, -3}, Vec3{0.1, 0.2, 3}}) c.points.push_back(where + p);
-  for (const auto& v : {std::array<std::int32_t, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) c.triangles.push_back({{n + v[0], n + v[1], n + v[2]}, 1, 0});
+  for (const Vec3& p : {Vec3{-3, -3, -3}, Vec3{3, -2, -3}, Vec3{0, 3, -3}, Vec3{0.1, 0.2, 3}})
+    c.points.push_back(where + p);
+  for (const auto& v : {std::array<std::int32_t, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+    c.triangles.push_back({{n + v[0], n + v[1], n + v[2]}, 1, 0});
   const RunReport r = judged(c, "crossing.vtp");
   EXPECT_EQ(exit_code(r.verdicts), 4);
   EXPECT_EQ(verdict(r, "closed").status, Status::pass);
@@ -230,8 +241,11 @@ TEST_F(Referee, FindsAShiftOfOnePixelAlongAnyAxis) {
     EXPECT_EQ(exit_code(r.verdicts), 6);
     EXPECT_EQ(verdict(r, "position").status, Status::fail) << verdict(r, "position").figure;
     double told[3];
-    ASSERT_EQ(std::sscanf(verdict(r, "position").figure.c_str(), "shifted by (%lf, %lf, %lf)", &told[0], &told[1], &told[2]), 3);
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(told[k], k == axis ? (axis == 1 ? -1 : 1) : 0, 0.15) << axis << ": " << verdict(r, "position").figure;
+    ASSERT_EQ(
+        std::sscanf(verdict(r, "position").figure.c_str(), "shifted by (%lf, %lf, %lf)", &told[0], &told[1], &told[2]),
+        3);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(told[k], k == axis ? (axis == 1 ? -1 : 1) : 0, 0.15) << axis << ": " << verdict(r, "position").figure;
   }
 }
 
@@ -245,7 +259,10 @@ TEST_F(Referee, FindsSwappedLabels) {
   const auto swapped = defects(r, "swapped_label");
   ASSERT_EQ(swapped.size(), 2u);
   for (const Defect& d : swapped) {
-    EXPECT_NE(d.text.find("label " + std::to_string(d.label) + " of the mesh lies where label " + std::to_string(3 - d.label)), std::string::npos) << d.text;
+    EXPECT_NE(d.text.find("label " + std::to_string(d.label) + " of the mesh lies where label " +
+                          std::to_string(3 - d.label)),
+              std::string::npos)
+        << d.text;
     if (d.label == 2) expect_near(d.where, {20 + 21, -70 + 25, 100 + 25}, 3);  // label 2 now holds the ellipsoid
   }
 }
@@ -269,7 +286,9 @@ TEST_F(Referee, FindsLpsTakenForRasAndTellsTheFrameWhenTheFileDoesNot) {
     const RunReport r = judged(options(write_mesh_file(std::string("right_") + space + ".vtp", ras, space)));
     EXPECT_EQ(exit_code(r.verdicts), 0);
     EXPECT_EQ(r.mesh->space, "ras");
-    EXPECT_NE(r.mesh->space_reason.find(*space == 'r' ? "the file tells RAS" : "overlap with the labels"), std::string::npos) << r.mesh->space_reason;
+    EXPECT_NE(r.mesh->space_reason.find(*space == 'r' ? "the file tells RAS" : "overlap with the labels"),
+              std::string::npos)
+        << r.mesh->space_reason;
   }
   ValidateRunOptions o = options(wrong);
   o.mesh_space = "ras";
@@ -281,7 +300,9 @@ TEST_F(Referee, AMirroredFrameIsNotInverted) {
   v.axes[0] = {-1, 0, 0};  // left-handed
   v.origin_mm = {20 + 63, -70, 100};
   for (int k = 0; k < v.size[2]; ++k)
-    for (int j = 0; j < v.size[1]; ++j) std::reverse(v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, j, k)), v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, j, k)) + v.size[0]);
+    for (int j = 0; j < v.size[1]; ++j)
+      std::reverse(v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, j, k)),
+                   v.voxels.begin() + static_cast<std::ptrdiff_t>(v.index(0, j, k)) + v.size[0]);
   ValidateRunOptions o = options(folder() + "/good.vtu");
   o.against->paths = {write_volume_file("mirrored.nrrd", v)};
   EXPECT_EQ(exit_code(judged(o).verdicts), 0);
@@ -335,7 +356,9 @@ TEST_F(Referee, OtherNumbersAreMatchedByOverlapAndSaid) {
   mesh.faces = faces_of_tets(mesh);
   const RunReport r = judged(mesh, "numbers.msh");
   EXPECT_EQ(exit_code(r.verdicts), 0);
-  EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(), [](const Warning& w) { return w.text.find("41 as 1") != std::string::npos && w.text.find("42 as 2") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(), [](const Warning& w) {
+    return w.text.find("41 as 1") != std::string::npos && w.text.find("42 as 2") != std::string::npos;
+  }));
 }
 
 TEST_F(Referee, MeshesSideBySideAndWithoutLabels) {
@@ -366,7 +389,8 @@ TEST_F(Referee, MeshElsewhereIsOneClearErrorWithTheLikelyReason) {
   };
   InterfaceComplex c = surface_;
   for (Vec3& p : c.points) p = p + Vec3{5000, 0, 0};
-  EXPECT_NE(error(write_mesh_file("far.vtp", c, "none")).find("do not overlap (neither as LPS nor as RAS)"), std::string::npos);
+  EXPECT_NE(error(write_mesh_file("far.vtp", c, "none")).find("do not overlap (neither as LPS nor as RAS)"),
+            std::string::npos);
   c = surface_;
   for (Vec3& p : c.points) p = 1e-3 * p;
   EXPECT_NE(error(write_mesh_file("metres.vtp", c, "none")).find("it would fit in metres"), std::string::npos);
@@ -411,22 +435,25 @@ TEST(PerfectMesh, ASphereHasItsFigures) {
   for (int k = 0; k < 56; ++k)
     for (int j = 0; j < 56; ++j)
       for (int i = 0; i < 56; ++i)
-        if (norm(Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)} - centre) < radius) v.voxels[v.index(i, j, k)] = 1;
+        if (norm(Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)} - centre) < radius)
+          v.voxels[v.index(i, j, k)] = 1;
   const RunReport r = judge_perfect(v, icosphere(radius, 5, 1, centre), "sphere");
   const LabelReport& l = r.labels[0];
   const double volume = 4.0 / 3 * kPi * radius * radius * radius;
   EXPECT_NEAR(l.surface_volume_mm3, volume, 2e-3 * volume);  // 20480 flat triangles lie inside
   EXPECT_LT(l.surface_volume_mm3, volume);
   EXPECT_NEAR(l.surface_area_mm2, 4 * kPi * radius * radius, 2e-3 * 4 * kPi * radius * radius);
-  EXPECT_GT(*l.dice, 0.999);              // centres decide: only those between the sphere and its triangles differ
-  EXPECT_LT(l.distance_mm->mean, 0.35);   // a voxel face lies up to half a voxel's diagonal off, by half that on average
+  EXPECT_GT(*l.dice, 0.999);  // centres decide: only those between the sphere and its triangles differ
+  // a voxel face lies up to half a voxel's diagonal off, by half that on average
+  EXPECT_LT(l.distance_mm->mean, 0.35);
   EXPECT_GT(l.distance_mm->mean, 0.15);
   EXPECT_LT(l.distance_mm->max, std::sqrt(3.0) / 2 + 0.05);
   EXPECT_LT(l.reverse_distance_mm->max, 0.9);
   EXPECT_GT(l.angle_min_deg, 40);
   EXPECT_EQ(*l.genus, 0);
   EXPECT_NEAR(*l.thickness_p5_mm, 2 * radius, 0.2);
-  for (const Verdict& verdict : r.verdicts) EXPECT_EQ(verdict.status, Status::pass) << verdict.title << ": " << verdict.figure;
+  for (const Verdict& verdict : r.verdicts)
+    EXPECT_EQ(verdict.status, Status::pass) << verdict.title << ": " << verdict.figure;
 }
 
 TEST(PerfectMesh, AFrameAndATouchingPairHaveTheirGenus) {

@@ -9,8 +9,7 @@ void add_box(InterfaceComplex& complex, Vec3 low, Vec3 high, Label label, Label 
   const std::int32_t n = static_cast<std::int32_t>(complex.points.size());
   for (int i = 0; i < 8; ++i)
     complex.points.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-  const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                           {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& q : quads) {
     complex.triangles.push_back({{n + q[0], n + q[1], n + q[2]}, label, outside});
     complex.triangles.push_back({{n + q[0], n + q[2], n + q[3]}, label, outside});
@@ -30,8 +29,7 @@ InterfaceComplex weld(const InterfaceComplex& complex) {
   std::map<std::array<double, 3>, std::int32_t> numbers;
   std::vector<std::int32_t> to;
   for (const Vec3& p : complex.points) {
-    const auto found =
-        numbers.emplace(std::array<double, 3>{p.x, p.y, p.z}, static_cast<std::int32_t>(numbers.size()));
+    const auto found = numbers.emplace(std::array<double, 3>{p.x, p.y, p.z}, static_cast<std::int32_t>(numbers.size()));
     if (found.second) out.points.push_back(p);
     to.push_back(found.first->second);
   }
@@ -45,10 +43,10 @@ InterfaceComplex icosphere(double radius, int level, Label label, Vec3 centre) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Vec3> points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                               {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::array<std::int32_t, 3>> faces = {
-      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  std::vector<std::array<std::int32_t, 3>> faces = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                                    {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                                    {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                                    {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int l = 0; l < level; ++l) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
     const auto middle = [&](std::int32_t a, std::int32_t b) {
@@ -120,8 +118,7 @@ LabelVolume empty_volume(int nx, int ny, int nz, int labels) {
 void fill(LabelVolume& volume, std::array<int, 3> low, std::array<int, 3> high, int label) {
   for (int k = low[2]; k < high[2]; ++k)
     for (int j = low[1]; j < high[1]; ++j)
-      for (int i = low[0]; i < high[0]; ++i)
-        volume.voxels[volume.index(i, j, k)] = static_cast<std::uint16_t>(label);
+      for (int i = low[0]; i < high[0]; ++i) volume.voxels[volume.index(i, j, k)] = static_cast<std::uint16_t>(label);
 }
 
 TetMesh two_tets() {

@@ -249,8 +249,7 @@ TEST(CheckSurface, VoxelNoiseHasTheVolumesAndComponentsOfItsVoxels) {
     LabelVolume v = empty_volume(5, 6, 5, 3);
     v.spacing_mm = {0.7, 1.3, 2.1};
     v.origin_mm = {-11.3, 5.7, 100.1};
-    for (auto& voxel : v.voxels)
-      voxel = static_cast<std::uint16_t>(round % 2 ? random() % 4 : random() % 5 / 4);
+    for (auto& voxel : v.voxels) voxel = static_cast<std::uint16_t>(round % 2 ? random() % 4 : random() % 5 / 4);
     const SurfaceCheck check = check_surface(voxel_surface(v));
     EXPECT_EQ(check.open_edges, 0u);
     EXPECT_EQ(check.self_intersections, 0u);

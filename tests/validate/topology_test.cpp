@@ -37,36 +37,46 @@ LabelTopology judged(const LabelVolume& v, long handles, int axis = 2) {
 }
 
 TEST(Topology, SlicesImplyTheirTunnelsAndLoopsOnly) {
-  const auto ring = [](int i, int j) { return i > 0 && j > 0 && i < 8 && j < 8 && !(i > 2 && j > 2 && i < 6 && j < 6); };
+  const auto ring = [](int i, int j) {
+    return i > 0 && j > 0 && i < 8 && j < 8 && !(i > 2 && j > 2 && i < 6 && j < 6);
+  };
   const LabelVolume tube = voxels(9, 9, 6, [&](int i, int j, int) { return ring(i, j); });
   EXPECT_EQ(judged(tube, 1).implied_handles, 1);
   EXPECT_EQ(judged(tube, 3).surplus(), 2);
-  const LabelVolume cup = voxels(9, 9, 6, [&](int i, int j, int k) { return k == 0 ? i > 0 && j > 0 && i < 8 && j < 8 : ring(i, j); });
+  const LabelVolume cup =
+      voxels(9, 9, 6, [&](int i, int j, int k) { return k == 0 ? i > 0 && j > 0 && i < 8 && j < 8 : ring(i, j); });
   EXPECT_EQ(judged(cup, 1).implied_handles, 0);
-  const LabelVolume shell = voxels(9, 9, 6, [&](int i, int j, int k) { return k == 0 || k == 5 ? i > 0 && j > 0 && i < 8 && j < 8 : ring(i, j); });
+  const LabelVolume shell = voxels(
+      9, 9, 6, [&](int i, int j, int k) { return k == 0 || k == 5 ? i > 0 && j > 0 && i < 8 && j < 8 : ring(i, j); });
   EXPECT_EQ(judged(shell, 1).implied_handles, 0);
   // A ring that stands: two legs that join above and below.
   const LabelVolume gate = voxels(9, 3, 9, [&](int i, int j, int k) { return j == 1 && ring(i, k); });
   EXPECT_EQ(judged(gate, 1).implied_handles, 1);
   for (int axis : {0, 1}) EXPECT_EQ(judged(gate, 1, axis).implied_handles, 1) << axis;
   // A tube whose wall is one voxel, pushed by one a slice: diagonal steps are no tunnels in the wall.
-  const LabelVolume oblique = voxels(20, 9, 6, [&](int i, int j, int k) { return i - 2 * k > 0 && j > 0 && i - 2 * k < 8 && j < 8 && !(i - 2 * k > 1 && j > 1 && i - 2 * k < 7 && j < 7); });
+  const LabelVolume oblique = voxels(20, 9, 6, [&](int i, int j, int k) {
+    return i - 2 * k > 0 && j > 0 && i - 2 * k < 8 && j < 8 && !(i - 2 * k > 1 && j > 1 && i - 2 * k < 7 && j < 7);
+  });
   EXPECT_EQ(judged(oblique, 9).implied_handles, 1);
-  const LabelVolume opening = voxels(9, 9, 6, [&](int i, int j, int k) { return ring(i, j) && (k < 3 || j != 4 || i < 4); });
+  const LabelVolume opening =
+      voxels(9, 9, 6, [&](int i, int j, int k) { return ring(i, j) && (k < 3 || j != 4 || i < 4); });
   EXPECT_EQ(judged(opening, 1).implied_handles, 1);
-  const LabelVolume ball_in_hollow = voxels(9, 9, 6, [&](int i, int j, int) { return ring(i, j) || (i == 4 && j == 4); });
+  const LabelVolume ball_in_hollow =
+      voxels(9, 9, 6, [&](int i, int j, int) { return ring(i, j) || (i == 4 && j == 4); });
   EXPECT_EQ(judged(ball_in_hollow, 1).implied_handles, 1);
   EXPECT_EQ(judged(ball_in_hollow, 1).implied_pieces, 2);
 }
 
 ContourPolygon disc(double cx, double r) {
   ContourPolygon p;
-  for (int i = 0; i < 60; ++i) p.points.push_back({cx + r * std::cos(2 * M_PI * i / 60), r * std::sin(2 * M_PI * i / 60)});
+  for (int i = 0; i < 60; ++i)
+    p.points.push_back({cx + r * std::cos(2 * M_PI * i / 60), r * std::sin(2 * M_PI * i / 60)});
   return p;
 }
 
 TEST(Topology, HolesOfAStitchedWallAreCountedAndFound) {
-  // A thin wall pushed by more than its thickness: stitched as it is, it tears on either side, between every two sections.
+  // A thin wall pushed by more than its thickness: stitched as it is, it tears on either side, between every two
+  // sections.
   LabelContours outer, inner;
   outer.label = 1;
   inner.label = 2;

@@ -47,8 +47,7 @@ TEST(CheckVolume, CornerTetHasKnownDihedrals) {
 }
 
 TEST(CheckVolume, NearlyFlatTetHasItsSmallDihedral) {
-  const double h =
-      std::tan(5 * std::acos(-1.0) / 180) / 3;  // 5 degrees above the sides of a triangle of inradius 1/3
+  const double h = std::tan(5 * std::acos(-1.0) / 180) / 3;  // 5 degrees above the sides of a triangle of inradius 1/3
   const double s = 2 / std::sqrt(3.0);
   const VolumeCheck c = check_volume(one_tet({0, 0, 0}, {s, 0, 0}, {s / 2, 1, 0}, {s / 2, 1 / 3.0, h}));
   EXPECT_NEAR(c.dihedral_min_deg, 5, 1e-9);
@@ -58,7 +57,7 @@ TEST(CheckVolume, NearlyFlatTetHasItsSmallDihedral) {
 
 TEST(CheckVolume, HistogramCountsEveryDihedral) {
   const VolumeCheck corner = check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}));
-  EXPECT_EQ(corner.dihedral_histogram[54 / 5], 3u);  // 54.7
+  EXPECT_EQ(corner.dihedral_histogram[54 / 5], 3u);                              // 54.7
   EXPECT_EQ(corner.dihedral_histogram[17] + corner.dihedral_histogram[18], 3u);  // 90
   std::size_t sum = 0;
   for (const std::size_t n : check_volume(two_tets()).dihedral_histogram) sum += n;
@@ -69,10 +68,12 @@ TEST(CheckVolume, NarrowWedgesOfTheSurfaceAreListedApart) {
   // Two tets side by side in a wedge of 8 degrees along z, split into 4 and 4; then the lower sheet is no surface.
   const double a = 4 * std::acos(-1.0) / 180;
   TetMesh m;
-  m.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {std::cos(a), std::sin(a), 0.5}, {std::cos(2 * a), std::sin(2 * a), 0.5}};
+  m.points = {
+      {0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {std::cos(a), std::sin(a), 0.5}, {std::cos(2 * a), std::sin(2 * a), 0.5}};
   m.tets = {{0, 2, 3, 1}, {0, 3, 4, 1}};
   m.labels = {1, 1};
-  m.faces = {{{0, 1, 2}, 1, 0}, {{0, 4, 1}, 1, 0}, {{0, 2, 3}, 0, 1}, {{0, 3, 4}, 0, 1}, {{1, 2, 3}, 1, 0}, {{1, 3, 4}, 1, 0}};
+  m.faces = {{{0, 1, 2}, 1, 0}, {{0, 4, 1}, 1, 0}, {{0, 2, 3}, 0, 1},
+             {{0, 3, 4}, 0, 1}, {{1, 2, 3}, 1, 0}, {{1, 3, 4}, 1, 0}};
   VolumeCheck c = check_volume(m);
   EXPECT_EQ(c.dihedral_below_10, 2u);
   EXPECT_EQ(c.in_narrow_wedges, 2u);
@@ -83,7 +84,8 @@ TEST(CheckVolume, NarrowWedgesOfTheSurfaceAreListedApart) {
 }
 
 TEST(CheckVolume, TetsWhereTwoSheetsPinchAreListedApart) {
-  // A lone flat tet has no inner edge. With its point above the triangle taken into a larger body, it still stands above it.
+  // A lone flat tet has no inner edge. With its point above the triangle taken into a larger body, it still stands
+  // above it.
   EXPECT_EQ(check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0.05})).pinched, 1u);
   EXPECT_EQ(check_volume(one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0.9})).pinched, 0u);
   TetMesh m = one_tet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0.05});
@@ -226,10 +228,11 @@ TEST(CheckVolume, StraightSecondOrderTetsAreAsTheirCorners) {
 }
 
 TEST(CheckVolume, ABulgeAddsItsVolume) {
-  // The edge along x is bent by h = 0.1 towards -y: y = l2 - 4 h l0 l1, so that the determinant is 1 + 4 h l1, and l1 has
-  // the integral 1/24 over the tet.
+  // The edge along x is bent by h = 0.1 towards -y: y = l2 - 4 h l0 l1, so that the determinant is 1 + 4 h l1, and l1
+  // has the integral 1/24 over the tet.
   TetMesh m = one_tet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
-  m.points.insert(m.points.end(), {{0.5, -0.1, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}, {0, 0, 0.5}, {0.5, 0, 0.5}, {0, 0.5, 0.5}});
+  m.points.insert(m.points.end(),
+                  {{0.5, -0.1, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}, {0, 0, 0.5}, {0.5, 0, 0.5}, {0, 0.5, 0.5}});
   m.mid = {{4, 5, 6, 7, 8, 9}};
   const VolumeCheck c = check_volume(m);
   EXPECT_EQ(c.inverted, 0u);
@@ -253,7 +256,8 @@ TEST(CheckVolume, NeighboursMustShareTheNodesOfTheirEdges) {
   TetMesh m = two_curved_tets();
   m.points.push_back(m.points[m.mid[1][0]]);
   m.mid[1][0] = static_cast<int>(m.points.size()) - 1;  // an own copy of the node
-  const bool shared = std::count(m.tets[0].begin(), m.tets[0].end(), m.tets[1][0]) && std::count(m.tets[0].begin(), m.tets[0].end(), m.tets[1][1]);
+  const bool shared = std::count(m.tets[0].begin(), m.tets[0].end(), m.tets[1][0]) &&
+                      std::count(m.tets[0].begin(), m.tets[0].end(), m.tets[1][1]);
   EXPECT_EQ(check_volume(m).nonconforming_edges, shared ? 1u : 0u);
   EXPECT_EQ(check_volume(m).conforms, !shared);
   TetMesh twice = two_curved_tets();

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "base/error.h"
@@ -45,16 +45,15 @@ TEST(FillVolume, TwoCubesShareTheirFace) {
 }
 
 TEST(FillVolume, LabelsMayBeNegativeOrLarge) {
-  const auto complex =
-      shapes::voxels(2, 1, 1, {1, 1, 1}, [](int i, int, int) { return i == 0 ? -5 : 2000000000; });
+  const auto complex = shapes::voxels(2, 1, 1, {1, 1, 1}, [](int i, int, int) { return i == 0 ? -5 : 2000000000; });
   const auto v = shapes::volumes(expect_verified(complex).mesh);
   EXPECT_DOUBLE_EQ(v.at(-5), 1);
   EXPECT_DOUBLE_EQ(v.at(2000000000), 1);
 }
 
 TEST(FillVolume, CavityStaysEmpty) {
-  const auto complex = shapes::voxels(3, 3, 3, {1, 1, 1},
-                                      [](int i, int j, int k) { return i == 1 && j == 1 && k == 1 ? 0 : 4; });
+  const auto complex =
+      shapes::voxels(3, 3, 3, {1, 1, 1}, [](int i, int j, int k) { return i == 1 && j == 1 && k == 1 ? 0 : 4; });
   const auto v = shapes::volumes(expect_verified(complex).mesh);
   ASSERT_EQ(v.size(), 1u);
   EXPECT_NEAR(v.at(4), 26, 1e-12);
@@ -100,8 +99,7 @@ TEST(FillVolume, SurfaceBetweenEqualLabelsIsKept) {
 }
 
 TEST(FillVolume, LabelsThatTouchAlongAnEdgeOnly) {
-  const auto complex =
-      shapes::voxels(2, 2, 1, {1, 1, 1}, [](int i, int j, int) { return i == j ? i + 1 : 0; });
+  const auto complex = shapes::voxels(2, 2, 1, {1, 1, 1}, [](int i, int j, int) { return i == j ? i + 1 : 0; });
   const auto v = shapes::volumes(expect_verified(complex).mesh);
   EXPECT_NEAR(v.at(1), 1, 1e-12);
   EXPECT_NEAR(v.at(2), 1, 1e-12);
@@ -174,9 +172,8 @@ TEST(FillVolume, IsDeterministic) {
 }
 
 TEST(FillVolume, ManyPiecesAreAllFilled) {
-  const auto complex = shapes::voxels(15, 15, 15, {1, 1, 1}, [](int i, int j, int k) {
-    return i % 2 || j % 2 || k % 2 ? 0 : 1 + (i + j + k) / 2 % 5;
-  });
+  const auto complex = shapes::voxels(
+      15, 15, 15, {1, 1, 1}, [](int i, int j, int k) { return i % 2 || j % 2 || k % 2 ? 0 : 1 + (i + j + k) / 2 % 5; });
   double sum = 0;
   for (const auto& [label, v] : shapes::volumes(expect_verified(complex).mesh)) sum += v;
   EXPECT_NEAR(sum, 512, 1e-9);
@@ -201,11 +198,9 @@ TEST(FillVolume, VolumeBoundHoldsInMillimetres) {
   const int known = static_cast<int>(complex.points.size());
   std::size_t inner = 0, above = 0;
   for (const auto& t : r.mesh.tets) {
-    if (std::any_of(t.begin(), t.end(), [&](int v) { return v < known; }))
-      continue;  // the kept surface asks for more
+    if (std::any_of(t.begin(), t.end(), [&](int v) { return v < known; })) continue;  // the kept surface asks for more
     const Vec3 a = r.mesh.points[t[0]];
-    const double v =
-        dot(r.mesh.points[t[1]] - a, cross(r.mesh.points[t[2]] - a, r.mesh.points[t[3]] - a)) / 6;
+    const double v = dot(r.mesh.points[t[1]] - a, cross(r.mesh.points[t[2]] - a, r.mesh.points[t[3]] - a)) / 6;
     ++inner;
     above += v > 0.05;
     EXPECT_LT(v, 0.1);  // TetGen's last optimisation may pass the bound a little
@@ -251,7 +246,8 @@ TEST(FillVolume, QualityRefinesAndKeepsTheSurface) {
 
 /// Enough triangles for two workers: four labels in a row, the sheets between them stepped.
 InterfaceComplex row_of_labels() {
-  return shapes::voxels(56, 16, 16, {1, 1, 1.25}, [](int i, int j, int k) { return 1 + (i + (j / 4 + k / 4) % 2) / 14 % 4; });
+  return shapes::voxels(56, 16, 16, {1, 1, 1.25},
+                        [](int i, int j, int k) { return 1 + (i + (j / 4 + k / 4) % 2) / 14 % 4; });
 }
 
 FillOptions graded(int threads = 0) {
@@ -292,7 +288,8 @@ TEST(FillVolume, MovedItIsAboutAsFineAndHoldsTheSameVolumes) {
   const FillResult here = expect_verified(complex, graded());
   for (Vec3& p : complex.points) p = p + Vec3{-1024, 512, 2048};
   const FillResult there = expect_verified(complex, graded());
-  EXPECT_NEAR(static_cast<double>(here.mesh.tets.size()), static_cast<double>(there.mesh.tets.size()), 0.03 * static_cast<double>(here.mesh.tets.size()));
+  EXPECT_NEAR(static_cast<double>(here.mesh.tets.size()), static_cast<double>(there.mesh.tets.size()),
+              0.03 * static_cast<double>(here.mesh.tets.size()));
   const auto a = shapes::volumes(here.mesh), b = shapes::volumes(there.mesh);
   ASSERT_EQ(a.size(), b.size());
   for (const auto& [label, mm3] : a) EXPECT_NEAR(b.at(label), mm3, 1e-9 * mm3);
@@ -306,7 +303,9 @@ TEST(FillVolume, ALabelsOwnVolumeBoundHoldsForItAlone) {
   options.label_max_volume_mm3 = {{7, 0.02}};
   const FillResult own = expect_verified(complex, options);
   EXPECT_EQ(own.fallback, "");
-  const auto count = [](const TetMesh& mesh, Label label) { return std::count(mesh.labels.begin(), mesh.labels.end(), label); };
+  const auto count = [](const TetMesh& mesh, Label label) {
+    return std::count(mesh.labels.begin(), mesh.labels.end(), label);
+  };
   EXPECT_GT(count(own.mesh, 7), 216 / 0.02);
   EXPECT_LT(count(own.mesh, 3), 1.3 * static_cast<double>(count(plain.mesh, 3)));
   EXPECT_GT(estimate_tets(complex, options), 216 / 0.02);

@@ -50,7 +50,8 @@ InterfaceComplex random_labels(int n, int labels, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Label> l(static_cast<std::size_t>(n) * n * n);
   for (auto& x : l) x = static_cast<Label>(random() % static_cast<unsigned>(labels));
-  InterfaceComplex complex = shapes::voxels(n, n, n, {0.7, 0.7, 1.1}, [&](int i, int j, int k) { return l[(static_cast<std::size_t>(k) * n + j) * n + i]; });
+  InterfaceComplex complex = shapes::voxels(
+      n, n, n, {0.7, 0.7, 1.1}, [&](int i, int j, int k) { return l[(static_cast<std::size_t>(k) * n + j) * n + i]; });
   std::uniform_real_distribution<double> shift(-0.05, 0.05);
   for (Vec3& p : complex.points) p = p + Vec3{shift(random), shift(random), shift(random)};
   return complex;
@@ -105,7 +106,8 @@ TEST(ImproveTets, RandomComplexesKeepEveryTriangleAndVolume) {
 /// A box of n * n * n cells with a wavy middle sheet: two labels, many tets.
 TetMesh many_tets(InterfaceComplex* complex) {
   const int n = 16;
-  *complex = shapes::voxels(n, n, n, {1, 1, 1}, [](int i, int j, int k) { return k + (i / 4 + j / 4) % 2 < 8 ? 1 : 2; });
+  *complex =
+      shapes::voxels(n, n, n, {1, 1, 1}, [](int i, int j, int k) { return k + (i / 4 + j / 4) % 2 < 8 ? 1 : 2; });
   std::mt19937 random(5);
   std::uniform_real_distribution<double> shift(-0.2, 0.2);
   for (Vec3& p : complex->points) p = p + Vec3{shift(random), shift(random), shift(random)};
@@ -147,7 +149,8 @@ TEST(ImproveTets, OutOfTimeTheMeshIsWholeAllTheSame) {
 }
 
 TEST(ImproveTets, AFlatTetThatNoSingleChangeMendsGoes) {
-  // Random labels, not remeshed: TetGen leaves slivers; what is left below 14 degrees after the single changes is searched.
+  // Random labels, not remeshed: TetGen leaves slivers; what is left below 14 degrees after the single changes is
+  // searched.
   std::size_t searched = 0;
   for (unsigned seed = 20; seed < 26; ++seed) {
     const InterfaceComplex complex = random_labels(5, 3, seed);
@@ -160,8 +163,9 @@ TEST(ImproveTets, AFlatTetThatNoSingleChangeMendsGoes) {
 }
 
 TEST(ImproveTets, PlatesThatAreFlatEverywhereAreNotSearchedForEver) {
-  // Three plates a hundredth as thick as their triangles: hundreds of tets are flat, and nothing helps. The search looks at what it has changed, not at all of
-  // them again and again, which took 130 times the tets and minutes for a drawing of a few lines.
+  // Three plates a hundredth as thick as their triangles: hundreds of tets are flat, and nothing helps. The search
+  // looks at what it has changed, not at all of them again and again, which took 130 times the tets and minutes for a
+  // drawing of a few lines.
   InterfaceComplex plates;
   for (int plate = 0; plate < 3; ++plate) {
     InterfaceComplex one = shapes::voxels(14, 14, 1, {1, 1, 0.01}, [](int, int, int) { return 1; });
@@ -185,7 +189,8 @@ TEST(ImproveTets, PlatesThatAreFlatEverywhereAreNotSearchedForEver) {
 }
 
 TEST(ImproveTets, NoSliverIsLeftWhereTheSurfaceAllowsBetter) {
-  // Shells between two shaken spheres, from thick ones to ones thinner than an edge: many tets have all corners on the surface.
+  // Shells between two shaken spheres, from thick ones to ones thinner than an edge: many tets have all corners on the
+  // surface.
   for (const double gap : {5.0, 2.0, 1.2, 0.8})
     for (unsigned seed = 0; seed < 3; ++seed) {
       SCOPED_TRACE(std::to_string(gap) + " " + std::to_string(seed));
@@ -272,13 +277,15 @@ TEST(EstimateTets, IsNearWhatIsMade) {
     for (const double growth : {1.0, 2.0}) {
       FillOptions options;
       options.inner_growth = growth;
-      const double made = static_cast<double>(fill(sphere, options).tets.size()), estimate = estimate_tets(sphere, options);
+      const double made = static_cast<double>(fill(sphere, options).tets.size()),
+                   estimate = estimate_tets(sphere, options);
       EXPECT_GT(estimate, 0.6 * made) << made;
       EXPECT_LT(estimate, 1.7 * made) << made;
     }
     FillOptions options;
     options.max_volume_mm3 = 0.5;
-    const double made = static_cast<double>(fill(sphere, options).tets.size()), estimate = estimate_tets(sphere, options);
+    const double made = static_cast<double>(fill(sphere, options).tets.size()),
+                 estimate = estimate_tets(sphere, options);
     EXPECT_GT(estimate, 0.6 * made) << made;
     EXPECT_LT(estimate, 1.7 * made) << made;
   }

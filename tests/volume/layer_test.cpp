@@ -43,7 +43,8 @@ void expect_sound(const TetMesh& mesh, const std::map<Label, double>& volumes, d
   EXPECT_EQ(check.inverted, 0u);
   EXPECT_TRUE(check.conforms) << check.nonconforming_faces << " faces, " << check.nonconforming_edges << " edges";
   ASSERT_EQ(check.labels.size(), volumes.size());
-  for (const LabelTets& l : check.labels) EXPECT_NEAR(l.volume_mm3, volumes.at(l.label), within * volumes.at(l.label)) << l.label;
+  for (const LabelTets& l : check.labels)
+    EXPECT_NEAR(l.volume_mm3, volumes.at(l.label), within * volumes.at(l.label)) << l.label;
 }
 
 InterfaceComplex box(Vec3 low, Vec3 high) {
@@ -72,7 +73,8 @@ TEST(Layers, ASpheresLayerIsAsThickAsAskedFor) {
   const Layered a = layered(ball, {{1, {2, 2}}});
   EXPECT_EQ(a.mesh.wedges.size(), 2 * ball.triangles.size());
   double volume = 0;
-  for (const InterfaceTriangle& t : ball.triangles) volume += std::abs(dot(ball.points[t.v[0]], cross(ball.points[t.v[1]], ball.points[t.v[2]]))) / 6;
+  for (const InterfaceTriangle& t : ball.triangles)
+    volume += std::abs(dot(ball.points[t.v[0]], cross(ball.points[t.v[1]], ball.points[t.v[2]]))) / 6;
   expect_sound(a.mesh, {{1, volume}});
   for (const auto& w : a.mesh.wedges)
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(norm(a.mesh.points[w[k]] - a.mesh.points[w[k + 3]]), 1, 0.03);
@@ -108,7 +110,8 @@ TEST(Layers, BothSidesOfAThinPlateShareItsRoom) {
 
 TEST(Layers, WhereALabelTouchesItselfThereIsNone) {
   // Two cubes of one label along a common edge.
-  const InterfaceComplex complex = shapes::voxels(4, 4, 2, {1, 1, 1}, [](int i, int j, int) { return (i < 2) == (j < 2) ? 1 : 0; });
+  const InterfaceComplex complex =
+      shapes::voxels(4, 4, 2, {1, 1, 1}, [](int i, int j, int) { return (i < 2) == (j < 2) ? 1 : 0; });
   const Layered a = layered(complex, {{1, {0.2, 1}}});
   expect_sound(a.mesh, {{1, 16}});
   EXPECT_GT(a.figures[0].pyramids + a.figures[0].tets, 0u);
@@ -145,7 +148,8 @@ TEST(Layers, OfSecondOrderStayPositiveAndHoldTheVolume) {
 
 TEST(Layers, AreTheSameForAnyNumberOfThreads) {
   const InterfaceComplex two = shapes::voxels(8, 6, 5, {1, 1, 1}, [](int i, int j, int) { return i + j < 6 ? 1 : 2; });
-  const TetMesh a = layered(two, {{1, {0.4, 2}}, {2, {0.3, 1}}}, 1).mesh, b = layered(two, {{1, {0.4, 2}}, {2, {0.3, 1}}}, 4).mesh;
+  const TetMesh a = layered(two, {{1, {0.4, 2}}, {2, {0.3, 1}}}, 1).mesh,
+                b = layered(two, {{1, {0.4, 2}}, {2, {0.3, 1}}}, 4).mesh;
   EXPECT_EQ(a.tets, b.tets);
   EXPECT_EQ(a.wedges, b.wedges);
   ASSERT_EQ(a.points.size(), b.points.size());

@@ -205,8 +205,7 @@ TEST(FillWorker, KilledWorkerIsACrash) {
 }
 
 TEST(FillWorker, WorkerThatSpeaksOtherwiseIsACrash) {
-  for (const char* script :
-       {"exit 3", "echo hello world, this is not the answer you are looking for", "cat"}) {
+  for (const char* script : {"exit 3", "echo hello world, this is not the answer you are looking for", "cat"}) {
     const FillResult r = fill_volume(cube(20), shell(script));
     EXPECT_EQ(r.status, Status::crashed) << script;
     EXPECT_NE(r.message.find("/bin/sh"), std::string::npos) << r.message;

@@ -40,7 +40,8 @@ TetMesh bent_labels(unsigned seed, std::size_t* kept, double bend_z = 1) {
   std::mt19937 random(seed);
   std::vector<Label> l(n * n * n);
   for (auto& x : l) x = static_cast<Label>(random() % 3U);
-  InterfaceComplex complex = shapes::voxels(n, n, n, {1, 1, 1}, [&](int i, int j, int k) { return l[static_cast<std::size_t>((k * n + j) * n + i)]; });
+  InterfaceComplex complex = shapes::voxels(
+      n, n, n, {1, 1, 1}, [&](int i, int j, int k) { return l[static_cast<std::size_t>((k * n + j) * n + i)]; });
   std::uniform_real_distribution<double> shift(-0.18, 0.18);
   for (Vec3& p : complex.points) p = p + Vec3{shift(random), shift(random), bend_z * shift(random)};
   *kept = complex.points.size();
@@ -51,7 +52,9 @@ TetMesh bent_labels(unsigned seed, std::size_t* kept, double bend_z = 1) {
   return std::move(result.mesh);
 }
 
-std::size_t crossings(const TetMesh& m) { return check_surface({m.points, m.faces}, {}).self_intersections; }
+std::size_t crossings(const TetMesh& m) {
+  return check_surface({m.points, m.faces}, {}).self_intersections;
+}
 
 TEST(RelaxSurface, MendsWhatPointsInsideCannotAndCrossesNothing) {
   std::size_t before = 0, after = 0, moved_points = 0;
@@ -103,7 +106,8 @@ TEST(RelaxSurface, FlatEndsStayFlat) {
     TetMesh mesh = bent_labels(seed, &kept, 0);
     std::set<std::int32_t> flat;
     for (const InterfaceTriangle& f : mesh.faces)
-      if ((f.below == 0 || f.above == 0) && mesh.points[f.v[0]].z == mesh.points[f.v[1]].z && mesh.points[f.v[0]].z == mesh.points[f.v[2]].z)
+      if ((f.below == 0 || f.above == 0) && mesh.points[f.v[0]].z == mesh.points[f.v[1]].z &&
+          mesh.points[f.v[0]].z == mesh.points[f.v[2]].z)
         flat.insert(f.v.begin(), f.v.end());
     for (const std::int32_t v : volume::relax_surface(mesh, kept, kGoal_deg, true)) {
       EXPECT_EQ(flat.count(v), 0U) << "seed " << seed;

@@ -94,7 +94,8 @@ InterfaceComplex cylinder(int n, int layers, double radius, double height) {
   InterfaceComplex c;
   for (int k = 0; k <= layers; ++k)
     for (int i = 0; i < n; ++i)
-      c.points.push_back({radius * std::cos(2 * kPi * i / n), radius * std::sin(2 * kPi * i / n), 0.3 + height * k / layers});
+      c.points.push_back(
+          {radius * std::cos(2 * kPi * i / n), radius * std::sin(2 * kPi * i / n), 0.3 + height * k / layers});
   const auto id = [n](int k, int i) { return k * n + i % n; };
   for (int k = 0; k < layers; ++k)
     for (int i = 0; i < n; ++i) shapes::add_quad(c, id(k, i), id(k, i + 1), id(k + 1, i + 1), id(k + 1, i), 1, 0);
@@ -254,7 +255,8 @@ TEST(RaiseOrder, OfASurfaceOfRestoredVolumeTheNodesMoveOntoTheTrueSphere) {
       for (std::size_t t = 0; t < mesh.tets.size(); ++t)
         for (int k = 0; k < 6; ++k)
           if (edges.count(std::minmax(mesh.tets[t][kEdges[k][0]], mesh.tets[t][kEdges[k][1]])))
-            for (const int v : {mesh.mid[t][k], mesh.tets[t][kEdges[k][0]], mesh.tets[t][kEdges[k][1]]}) most = std::max(most, std::abs(norm(mesh.points[v]) - 10));
+            for (const int v : {mesh.mid[t][k], mesh.tets[t][kEdges[k][0]], mesh.tets[t][kEdges[k][1]]})
+              most = std::max(most, std::abs(norm(mesh.points[v]) - 10));
       return most;
     };
     EXPECT_LT(farthest(r.mesh), 0.2 * farthest(stiff.mesh));
@@ -290,7 +292,8 @@ TEST(RaiseOrder, OfRestoredVolumesEveryLabelKeepsItsOwnAndCapsStayPlane) {
     part.tets.clear(), part.mid.clear();
     for (std::size_t t = 0; t < both.tets.size(); ++t)
       if (both.labels[t] == label) part.tets.push_back(both.tets[t]), part.mid.push_back(both.mid[t]);
-    EXPECT_NEAR(curved_volume(part), shapes::volumes(linear).at(label), 1e-5 * shapes::volumes(linear).at(label)) << label;
+    EXPECT_NEAR(curved_volume(part), shapes::volumes(linear).at(label), 1e-5 * shapes::volumes(linear).at(label))
+        << label;
   }
 }
 

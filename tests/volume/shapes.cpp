@@ -14,8 +14,7 @@ void add_quad(InterfaceComplex& complex, int a, int b, int c, int d, Label below
   complex.triangles.push_back({{a, c, d}, below, above});
 }
 
-InterfaceComplex voxels(int nx, int ny, int nz, Vec3 spacing,
-                        const std::function<Label(int, int, int)>& label) {
+InterfaceComplex voxels(int nx, int ny, int nz, Vec3 spacing, const std::function<Label(int, int, int)>& label) {
   InterfaceComplex complex;
   std::map<std::array<int, 3>, int> ids;
   const auto at = [&](int i, int j, int k) -> Label {
@@ -76,7 +75,8 @@ InterfaceComplex sphere(int levels, double radius, Label inside, Label outside) 
     std::vector<InterfaceTriangle> finer;
     for (const auto& t : c.triangles) {
       const int ab = middle(t.v[0], t.v[1]), bc = middle(t.v[1], t.v[2]), ca = middle(t.v[2], t.v[0]);
-      for (const auto& v : {std::array{t.v[0], ab, ca}, std::array{t.v[1], bc, ab}, std::array{t.v[2], ca, bc}, std::array{ab, bc, ca}})
+      for (const auto& v :
+           {std::array{t.v[0], ab, ca}, std::array{t.v[1], bc, ab}, std::array{t.v[2], ca, bc}, std::array{ab, bc, ca}})
         finer.push_back({{v[0], v[1], v[2]}, inside, outside});
     }
     c.triangles = finer;
@@ -91,8 +91,7 @@ std::map<Label, double> volumes(const TetMesh& mesh) {
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
     const auto& t = mesh.tets[i];
     const Vec3 a = mesh.points[t[0]];
-    out[mesh.labels[i]] +=
-        dot(mesh.points[t[1]] - a, cross(mesh.points[t[2]] - a, mesh.points[t[3]] - a)) / 6;
+    out[mesh.labels[i]] += dot(mesh.points[t[1]] - a, cross(mesh.points[t[2]] - a, mesh.points[t[3]] - a)) / 6;
   }
   return out;
 }
@@ -154,13 +153,11 @@ void expect_fills(const TetMesh& mesh, const InterfaceComplex& complex) {
   std::size_t wrong = 0;
   for (const InterfaceTriangle& f : mesh.faces) {
     if (f.below == f.above) continue;
-    for (const Side& expected :
-         {side(f.v[0], f.v[1], f.v[2], f.below), side(f.v[0], f.v[2], f.v[1], f.above)}) {
+    for (const Side& expected : {side(f.v[0], f.v[1], f.v[2], f.below), side(f.v[0], f.v[2], f.v[1], f.above)}) {
       if (expected.label == 0) continue;
       auto& found = boundary[expected.key];
-      const auto it = std::find_if(found.begin(), found.end(), [&](const Side& s) {
-        return s.sign == expected.sign && s.label == expected.label;
-      });
+      const auto it = std::find_if(found.begin(), found.end(),
+                                   [&](const Side& s) { return s.sign == expected.sign && s.label == expected.label; });
       if (it == found.end()) {
         ++wrong;
       } else {

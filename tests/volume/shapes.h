@@ -9,8 +9,7 @@ namespace stackmesh::shapes {
 
 /// The boundary of a label array: `label(i, j, k)` for 0 <= i < nx ...; outside is the background. Every face
 /// between two labels becomes two triangles; corners are shared.
-InterfaceComplex voxels(int nx, int ny, int nz, Vec3 spacing,
-                        const std::function<Label(int, int, int)>& label);
+InterfaceComplex voxels(int nx, int ny, int nz, Vec3 spacing, const std::function<Label(int, int, int)>& label);
 
 /// Adds one triangle pair a, b, c, d (counter-clockwise seen from `above`).
 void add_quad(InterfaceComplex& complex, int a, int b, int c, int d, Label below, Label above);

@@ -34,13 +34,20 @@ void decode(const char* path, std::size_t count, double* values) {
   io->Read(bytes.data());
   using Type = itk::IOComponentEnum;
   switch (io->GetComponentType()) {
-    case Type::UCHAR: return copy<unsigned char>(bytes, count, values);
-    case Type::CHAR: return copy<signed char>(bytes, count, values);
-    case Type::USHORT: return copy<unsigned short>(bytes, count, values);
-    case Type::SHORT: return copy<short>(bytes, count, values);
-    case Type::UINT: return copy<unsigned int>(bytes, count, values);
-    case Type::INT: return copy<int>(bytes, count, values);
-    default: throw std::invalid_argument("voxel type");
+    case Type::UCHAR:
+      return copy<unsigned char>(bytes, count, values);
+    case Type::CHAR:
+      return copy<signed char>(bytes, count, values);
+    case Type::USHORT:
+      return copy<unsigned short>(bytes, count, values);
+    case Type::SHORT:
+      return copy<short>(bytes, count, values);
+    case Type::UINT:
+      return copy<unsigned int>(bytes, count, values);
+    case Type::INT:
+      return copy<int>(bytes, count, values);
+    default:
+      throw std::invalid_argument("voxel type");
   }
 }
 

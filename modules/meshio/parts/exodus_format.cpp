@@ -39,9 +39,13 @@ class ExodusFile {
     check(ex_close(id));
   }
   void check(int code) const {
-    if (code < 0) fail_output("the Exodus library could not write (code " + std::to_string(code) + ")", path_, "free some space or choose another folder");
+    if (code < 0)
+      fail_output("the Exodus library could not write (code " + std::to_string(code) + ")", path_,
+                  "free some space or choose another folder");
   }
-  void names(ex_entity_type type, const std::vector<std::string>& names) const { check(ex_put_names(id_, type, pointers(names).data())); }
+  void names(ex_entity_type type, const std::vector<std::string>& names) const {
+    check(ex_put_names(id_, type, pointers(names).data()));
+  }
   void variables(const std::vector<std::string>& names) const {
     check(ex_put_variable_param(id_, EX_ELEM_BLOCK, static_cast<int>(names.size())));
     check(ex_put_variable_names(id_, EX_ELEM_BLOCK, static_cast<int>(names.size()), pointers(names).data()));
@@ -87,7 +91,11 @@ std::vector<Block> blocks_of(const PreparedMesh& mesh) {
   }
   for (const LabelGroup& g : mesh.labels)
     for (const bool pyramids : {false, true}) {
-      Block b{0, pyramids ? (mesh.second_order() ? "PYRAMID13" : "PYRAMID5") : (mesh.second_order() ? "WEDGE15" : "WEDGE6"), deck_name(g.name) + (pyramids ? "_pyramids" : "_wedges"), {}};
+      Block b{
+          0,
+          pyramids ? (mesh.second_order() ? "PYRAMID13" : "PYRAMID5") : (mesh.second_order() ? "WEDGE15" : "WEDGE6"),
+          deck_name(g.name) + (pyramids ? "_pyramids" : "_wedges"),
+          {}};
       for (std::size_t w = g.wedge_begin; w < g.wedge_end; ++w)
         if (is_pyramid(mesh.wedges[w]) == pyramids) b.elements.push_back(mesh.tets.size() + w);
       if (b.elements.empty()) continue;
@@ -113,14 +121,17 @@ void put_blocks(const ExodusFile& file, const PreparedMesh& mesh, const std::vec
     std::vector<int> list;
     for (const std::size_t e : b.elements) {
       if (e >= mesh.tets.size()) {
-        for (const std::int32_t v : wedge_nodes_of(mesh, e - mesh.tets.size(), WedgeOrder::exodus)) list.push_back(v + 1);
+        for (const std::int32_t v : wedge_nodes_of(mesh, e - mesh.tets.size(), WedgeOrder::exodus))
+          list.push_back(v + 1);
         continue;
       }
       for (const std::int32_t v : mesh.tets[e]) list.push_back(v + 1);
       if (mesh.second_order())
         for (const std::int32_t v : mesh.tet_mids[e]) list.push_back(v + 1);
     }
-    file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, b.id, b.type.c_str(), static_cast<std::int64_t>(b.elements.size()), static_cast<std::int64_t>(list.size() / b.elements.size()), 0, 0, 0));
+    file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, b.id, b.type.c_str(),
+                            static_cast<std::int64_t>(b.elements.size()),
+                            static_cast<std::int64_t>(list.size() / b.elements.size()), 0, 0, 0));
     file.check(ex_put_conn(file.id(), EX_ELEM_BLOCK, b.id, list.data(), nullptr, nullptr));
     names.push_back(b.name);
   }
@@ -147,7 +158,9 @@ void put_sets(const ExodusFile& file, const PreparedMesh& mesh, const std::vecto
     for (const TetFace f : faces) {
       const auto e = static_cast<std::size_t>(f.tet);
       elements.push_back(number[e]);
-      sides.push_back(e < mesh.tets.size() ? kSide[f.face] : is_pyramid(mesh.wedges[e - mesh.tets.size()]) ? kPyramidSide[f.face] : kWedgeSide[f.face]);
+      sides.push_back(e < mesh.tets.size()                            ? kSide[f.face]
+                      : is_pyramid(mesh.wedges[e - mesh.tets.size()]) ? kPyramidSide[f.face]
+                                                                      : kWedgeSide[f.face]);
     }
     file.check(ex_put_set_param(file.id(), EX_SIDE_SET, ++id, static_cast<std::int64_t>(faces.size()), 0));
     if (!faces.empty()) file.check(ex_put_set(file.id(), EX_SIDE_SET, id, elements.data(), sides.data()));
@@ -177,7 +190,8 @@ void put_materials(const ExodusFile& file, const PreparedMesh& mesh, const std::
     for (const Block& b : blocks) {
       std::vector<double> of_block;
       for (const std::size_t e : b.elements) of_block.push_back(values[k][e]);
-      file.check(ex_put_var(file.id(), 1, EX_ELEM_BLOCK, static_cast<int>(k) + 1, b.id, static_cast<std::int64_t>(of_block.size()), of_block.data()));
+      file.check(ex_put_var(file.id(), 1, EX_ELEM_BLOCK, static_cast<int>(k) + 1, b.id,
+                            static_cast<std::int64_t>(of_block.size()), of_block.data()));
     }
 }
 
@@ -185,13 +199,16 @@ void put_materials(const ExodusFile& file, const PreparedMesh& mesh, const std::
 
 void write_exodus(const std::string& path, const PreparedMesh& mesh) {
   for (const LabelGroup& g : mesh.labels)
-    if (g.label <= 0) fail_output("Exodus numbers its blocks from 1", "label " + std::to_string(g.label), "renumber the label or write another format");
+    if (g.label <= 0)
+      fail_output("Exodus numbers its blocks from 1", "label " + std::to_string(g.label),
+                  "renumber the label or write another format");
   ExodusFile file(path);
   const std::vector<Block> blocks = blocks_of(mesh);
   const SolverSets& sets = mesh.sets;
   const std::string title = "stackmesh, mm" + (mesh.space.empty() ? "" : ", " + mesh.space_mark());
-  file.check(ex_put_init(file.id(), title.c_str(), 3, static_cast<std::int64_t>(mesh.points.size()), static_cast<std::int64_t>(mesh.elements()),
-                         static_cast<std::int64_t>(blocks.size()), static_cast<std::int64_t>(sets.node_sets.size()),
+  file.check(ex_put_init(file.id(), title.c_str(), 3, static_cast<std::int64_t>(mesh.points.size()),
+                         static_cast<std::int64_t>(mesh.elements()), static_cast<std::int64_t>(blocks.size()),
+                         static_cast<std::int64_t>(sets.node_sets.size()),
                          static_cast<std::int64_t>(sets.surfaces.size() + sets.shells.size())));
   put_coordinates(file, mesh);
   put_blocks(file, mesh, blocks);

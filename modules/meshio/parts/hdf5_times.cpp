@@ -7,12 +7,17 @@
 namespace stackmesh {
 namespace {
 
-std::uint32_t turn(std::uint32_t x, int n) { return x << n | x >> (32 - n); }
+std::uint32_t turn(std::uint32_t x, int n) {
+  return x << n | x >> (32 - n);
+}
 
 /// The checksum of HDF5's metadata: Bob Jenkins's lookup3, over bytes.
 std::uint32_t checksum(const unsigned char* k, std::size_t length) {
   std::uint32_t a = 0xdeadbeef + static_cast<std::uint32_t>(length), b = a, c = a;
-  const auto word = [&](int at) { return std::uint32_t{k[at]} | std::uint32_t{k[at + 1]} << 8 | std::uint32_t{k[at + 2]} << 16 | std::uint32_t{k[at + 3]} << 24; };
+  const auto word = [&](int at) {
+    return std::uint32_t{k[at]} | std::uint32_t{k[at + 1]} << 8 | std::uint32_t{k[at + 2]} << 16 |
+           std::uint32_t{k[at + 3]} << 24;
+  };
   for (; length > 12; length -= 12, k += 12) {
     a += word(0), b += word(4), c += word(8);
     a -= c, a ^= turn(c, 4), c += b;

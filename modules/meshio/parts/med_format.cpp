@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "meshio/formats.h"
-#include "meshio/parts/hdf5_times.h"
 #include "meshio/output_buffer.h"
+#include "meshio/parts/hdf5_times.h"
 
 namespace stackmesh {
 namespace {
@@ -19,9 +19,11 @@ namespace {
 constexpr char kMesh[] = "stackmesh";
 /// Longest group name of Code_Aster.
 constexpr std::size_t kNameLength = 24;
-/// MED's tetrahedra are wound the other way: corners, then mid-side nodes (kTetEdges) of its edges 12, 23, 31, 14, 24, 34.
+/// MED's tetrahedra are wound the other way: corners, then mid-side nodes (kTetEdges) of its edges 12, 23, 31, 14,
+/// 24, 34.
 constexpr int kCorner[4] = {0, 2, 1, 3}, kMid[6] = {2, 1, 0, 3, 5, 4};
-/// And so are its wedges (kWedgeEdges), and pyramids: the base 0 1 4 3, the apex 2; edges of the base, then those to the apex.
+/// And so are its wedges (kWedgeEdges), and pyramids: the base 0 1 4 3, the apex 2; edges of the base, then those to
+/// the apex.
 constexpr int kWedgeCorner[6] = {0, 2, 1, 3, 5, 4}, kWedgeMid[9] = {2, 1, 0, 5, 4, 3, 6, 8, 7};
 constexpr int kPyramidCorner[5] = {0, 1, 4, 3, 2}, kPyramidMid[8] = {0, 7, 3, 6, 2, 1, 4, 5};
 
@@ -35,7 +37,8 @@ std::string fields(const std::vector<std::string>& names, std::size_t width) {
   return text;
 }
 
-/// A file in memory: HDF5 (1.10) crashes at the end of a program that could not write to a disk. Every call that fails is an error.
+/// A file in memory: HDF5 (1.10) crashes at the end of a program that could not write to a disk. Every call that fails
+/// is an error.
 class MedFile {
  public:
   MedFile() : id_(MEDmemFileOpen("stackmesh.med", &image_, MED_FALSE, MED_ACC_CREAT)) { check(id_ < 0 ? -1 : 0); }
@@ -56,12 +59,14 @@ class MedFile {
   void check(med_err code) const {
     if (code < 0) fail_output("the MED library failed", ".med", "free some memory, or write another format");
   }
-  void cells(med_geometry_type type, med_entity_type entity, std::size_t count, const std::vector<med_int>& nodes) const {
-    check(MEDmeshElementConnectivityWr(id_, kMesh, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, entity, type, MED_NODAL, MED_FULL_INTERLACE, static_cast<med_int>(count),
-                                       nodes.data()));
+  void cells(med_geometry_type type, med_entity_type entity, std::size_t count,
+             const std::vector<med_int>& nodes) const {
+    check(MEDmeshElementConnectivityWr(id_, kMesh, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, entity, type, MED_NODAL,
+                                       MED_FULL_INTERLACE, static_cast<med_int>(count), nodes.data()));
   }
   void families(med_geometry_type type, med_entity_type entity, const std::vector<med_int>& numbers) const {
-    check(MEDmeshEntityFamilyNumberWr(id_, kMesh, MED_NO_DT, MED_NO_IT, entity, type, static_cast<med_int>(numbers.size()), numbers.data()));
+    check(MEDmeshEntityFamilyNumberWr(id_, kMesh, MED_NO_DT, MED_NO_IT, entity, type,
+                                      static_cast<med_int>(numbers.size()), numbers.data()));
   }
   med_idt id() const { return id_; }
 
@@ -70,7 +75,8 @@ class MedFile {
   med_idt id_;
 };
 
-/// Which groups each entity is in; all that are in the same ones are a family. Nodes have numbers above 0, elements below.
+/// Which groups each entity is in; all that are in the same ones are a family. Nodes have numbers above 0, elements
+/// below.
 class Families {
  public:
   explicit Families(int sign) : sign_(sign) {}
@@ -83,7 +89,8 @@ class Families {
       std::vector<std::string> list;
       for (const int g : groups) list.push_back(names[g]);
       const std::string family = "FAM_" + std::to_string(number);
-      file.check(MEDfamilyCr(file.id(), kMesh, family.c_str(), number, static_cast<med_int>(list.size()), fields(list, MED_LNAME_SIZE).c_str()));
+      file.check(MEDfamilyCr(file.id(), kMesh, family.c_str(), number, static_cast<med_int>(list.size()),
+                             fields(list, MED_LNAME_SIZE).c_str()));
     }
   }
 
@@ -95,8 +102,8 @@ class Families {
 void put_nodes(const MedFile& file, const PreparedMesh& mesh, const std::map<std::string, std::string>& short_names) {
   std::vector<med_float> coordinates;
   for (const Vec3 p : mesh.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-  file.check(MEDmeshNodeCoordinateWr(file.id(), kMesh, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_FULL_INTERLACE, static_cast<med_int>(mesh.points.size()),
-                                     coordinates.data()));
+  file.check(MEDmeshNodeCoordinateWr(file.id(), kMesh, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_FULL_INTERLACE,
+                                     static_cast<med_int>(mesh.points.size()), coordinates.data()));
   std::vector<std::vector<int>> groups(mesh.points.size());
   std::vector<std::string> names;
   for (const NodeSet& s : mesh.sets.node_sets) {
@@ -116,7 +123,8 @@ med_geometry_type wedge_type(const PreparedMesh& mesh, bool pyramid) {
 
 /// Elements in groups of their label and of their material; faces of sets as triangles in theirs.
 /// @return the elements behind the triangles
-std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mesh, const std::map<std::string, std::string>& short_names) {
+std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mesh,
+                                    const std::map<std::string, std::string>& short_names) {
   const SolverSets& sets = mesh.sets;
   std::vector<std::string> names;
   std::vector<std::vector<int>> groups(mesh.elements());
@@ -138,7 +146,8 @@ std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mes
     if (mesh.second_order())
       for (const int k : kMid) nodes.push_back(mesh.tet_mids[t][k] + 1);
   }
-  const med_geometry_type tet = mesh.second_order() ? MED_TETRA10 : MED_TETRA4, triangle = mesh.second_order() ? MED_TRIA6 : MED_TRIA3;
+  const med_geometry_type tet = mesh.second_order() ? MED_TETRA10 : MED_TETRA4,
+                          triangle = mesh.second_order() ? MED_TRIA6 : MED_TRIA3;
   if (!mesh.tets.empty()) {
     file.cells(tet, MED_CELL, mesh.tets.size(), nodes);
     file.families(tet, MED_CELL, numbers);
@@ -152,14 +161,16 @@ std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mes
         for (const int k : order) nodes.push_back(of[k] + 1);
       };
       pyramids ? put_nodes(mesh.wedges[w], kPyramidCorner) : put_nodes(mesh.wedges[w], kWedgeCorner);
-      if (mesh.second_order()) pyramids ? put_nodes(mesh.wedge_mids[w], kPyramidMid) : put_nodes(mesh.wedge_mids[w], kWedgeMid);
+      if (mesh.second_order())
+        pyramids ? put_nodes(mesh.wedge_mids[w], kPyramidMid) : put_nodes(mesh.wedge_mids[w], kWedgeMid);
     }
     if (numbers.empty()) continue;
     file.cells(wedge_type(mesh, pyramids), MED_CELL, numbers.size(), nodes);
     file.families(wedge_type(mesh, pyramids), MED_CELL, numbers);
   }
 
-  // A face that is in several sets is one triangle. Sets look at an interface from either side: the first one's winding stays.
+  // A face that is in several sets is one triangle. Sets look at an interface from either side: the first one's winding
+  // stays.
   std::map<std::array<std::int32_t, 3>, std::size_t> place;
   std::vector<std::vector<int>> in;
   std::vector<std::int32_t> behind;
@@ -193,15 +204,18 @@ std::vector<std::int32_t> put_cells(const MedFile& file, const PreparedMesh& mes
 }
 
 /// A value for each element, and for each triangle that of the one behind it (meshio wants one for all).
-void put_field(const MedFile& file, const PreparedMesh& mesh, const std::string& name, const std::string& unit, const std::vector<double>& values,
-               const std::vector<std::int32_t>& behind) {
+void put_field(const MedFile& file, const PreparedMesh& mesh, const std::string& name, const std::string& unit,
+               const std::vector<double>& values, const std::vector<std::int32_t>& behind) {
   const std::string component = fields({name}, MED_SNAME_SIZE), in = fields({unit}, MED_SNAME_SIZE);
   file.check(MEDfieldCr(file.id(), name.c_str(), MED_FLOAT64, 1, component.c_str(), in.c_str(), "", kMesh));
   const auto put = [&](med_geometry_type type, const std::vector<double>& of) {
-    file.check(MEDfieldValueWr(file.id(), name.c_str(), MED_NO_DT, MED_NO_IT, 0, MED_CELL, type, MED_FULL_INTERLACE, MED_ALL_CONSTITUENT,
-                               static_cast<med_int>(of.size()), reinterpret_cast<const unsigned char*>(of.data())));
+    file.check(MEDfieldValueWr(file.id(), name.c_str(), MED_NO_DT, MED_NO_IT, 0, MED_CELL, type, MED_FULL_INTERLACE,
+                               MED_ALL_CONSTITUENT, static_cast<med_int>(of.size()),
+                               reinterpret_cast<const unsigned char*>(of.data())));
   };
-  if (!mesh.tets.empty()) put(mesh.second_order() ? MED_TETRA10 : MED_TETRA4, {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(mesh.tets.size())});
+  if (!mesh.tets.empty())
+    put(mesh.second_order() ? MED_TETRA10 : MED_TETRA4,
+        {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(mesh.tets.size())});
   for (const bool pyramids : {false, true}) {
     std::vector<double> of_wedges;
     for (std::size_t w = 0; w < mesh.wedges.size(); ++w)
@@ -232,12 +246,15 @@ void write_med(std::FILE* file, const PreparedMesh& mesh) {
   MedFile med;
   const std::string description = "stackmesh, mm, N, MPa, t/mm3" + (mesh.space.empty() ? "" : "; " + mesh.space_mark());
   const std::string axes = fields({"x", "y", "z"}, MED_SNAME_SIZE), units = fields({"mm", "mm", "mm"}, MED_SNAME_SIZE);
-  med.check(MEDmeshCr(med.id(), kMesh, 3, 3, MED_UNSTRUCTURED_MESH, description.c_str(), "", MED_SORT_DTIT, MED_CARTESIAN, axes.c_str(), units.c_str()));
+  med.check(MEDmeshCr(med.id(), kMesh, 3, 3, MED_UNSTRUCTURED_MESH, description.c_str(), "", MED_SORT_DTIT,
+                      MED_CARTESIAN, axes.c_str(), units.c_str()));
   med.check(MEDfamilyCr(med.id(), kMesh, "FAMILLE_ZERO", 0, 0, ""));
   put_nodes(med, mesh, short_names);
   const std::vector<std::int32_t> behind = put_cells(med, mesh, short_names);
-  if (!sets.placeholder_materials && !sets.modulus_mpa.empty()) put_field(med, mesh, "modulus_MPa", "MPa", sets.modulus_mpa, behind);
-  if (!sets.placeholder_materials && !sets.density_t_mm3.empty()) put_field(med, mesh, "density_t_mm3", "t/mm3", sets.density_t_mm3, behind);
+  if (!sets.placeholder_materials && !sets.modulus_mpa.empty())
+    put_field(med, mesh, "modulus_MPa", "MPa", sets.modulus_mpa, behind);
+  if (!sets.placeholder_materials && !sets.density_t_mm3.empty())
+    put_field(med, mesh, "density_t_mm3", "t/mm3", sets.density_t_mm3, behind);
   med.write(file);
 }
 

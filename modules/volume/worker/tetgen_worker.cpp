@@ -64,8 +64,7 @@ bool write_all(int fd, const void* from, std::size_t bytes) {
   header.outcome = outcome;
   header.code = code;
   header.text_bytes = got > 0 ? static_cast<std::uint64_t>(got) : 0;
-  const bool sent =
-      write_all(answer_fd, &header, sizeof header) && write_all(answer_fd, text, header.text_bytes);
+  const bool sent = write_all(answer_fd, &header, sizeof header) && write_all(answer_fd, text, header.text_bytes);
   _exit(sent ? 0 : 72);
 }
 
@@ -80,7 +79,8 @@ void on_signal(int signal) {
 void die_quietly() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const char* const parent = std::getenv(worker::kGuardVariable);
-  if (parent != nullptr && std::atol(parent) > 1 && std::atol(parent) != static_cast<long>(getppid())) _exit(74);  // it had ended before
+  // it had ended before
+  if (parent != nullptr && std::atol(parent) > 1 && std::atol(parent) != static_cast<long>(getppid())) _exit(74);
   signal(SIGXFSZ, SIG_IGN);  // what TetGen prints may pass a bound on files; it is in memory
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
@@ -179,8 +179,7 @@ int tetgen_worker_main() {
   } catch (const std::exception&) {
     answer_failure(worker::kGaveUp, 1);
   }
-  if (out->numberoftetrahedra > 0 && out->numberofpoints < in->numberofpoints)
-    answer_failure(worker::kGaveUp, 2);
+  if (out->numberoftetrahedra > 0 && out->numberofpoints < in->numberofpoints) answer_failure(worker::kGaveUp, 2);
   _exit(send_answer(*in, *out, search_only) ? 0 : 72);
 }
 
