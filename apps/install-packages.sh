@@ -17,6 +17,7 @@ program=(
 )
 tests=(
   libgtest-dev libbenchmark-dev
+  clang-format # compares the source with .clang-format
   doxygen texlive-binaries # the reference of the public headers; bibtex for its bibliography
   python3 python3-numpy python3-scipy python3-nibabel python3-pydicom python3-pil python3-vtk9 python3-meshio python3-h5py python3-jsonschema gmsh calculix-ccx
   chromium chromium-driver python3-selenium # opens the HTML report

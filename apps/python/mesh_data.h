@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/mesh_run.h"
+#include "run/mesh_run.h"
 
 namespace stackmesh::python {
 

@@ -11,9 +11,9 @@
 #include "input_labels.h"
 #include "mesh_data.h"
 #include "options.h"
-#include "pipeline/fem_run.h"
-#include "pipeline/mesh_run.h"
-#include "pipeline/validate_run.h"
+#include "run/fem_run.h"
+#include "run/mesh_run.h"
+#include "run/validate_run.h"
 #include "volume/find_worker.h"
 #include "watched_run.h"
 

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "base/monitor.h"
-#include "pipeline/fem_run.h"
-#include "pipeline/mesh_run.h"
-#include "pipeline/validate_run.h"
+#include "run/fem_run.h"
+#include "run/mesh_run.h"
+#include "run/validate_run.h"
 
 namespace stackmesh::app {
 

@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "meshio/write_sections.h"
 #include "options.h"
-#include "pipeline/output_files.h"
+#include "run/output_files.h"
 
 namespace stackmesh::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "commands.h"
 #include "fem/material_law.h"
 #include "options.h"
-#include "pipeline/fem_run.h"
+#include "run/fem_run.h"
 
 namespace stackmesh::app {
 namespace {

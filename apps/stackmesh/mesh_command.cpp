@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "meshio/write_mesh.h"
 #include "options.h"
-#include "pipeline/mesh_run.h"
+#include "run/mesh_run.h"
 #include "slicer_module.h"
 
 namespace stackmesh::app {

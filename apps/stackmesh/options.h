@@ -8,8 +8,8 @@
 
 #include "base/monitor.h"
 #include "base/warning.h"
-#include "pipeline/input.h"
-#include "pipeline/layers.h"
+#include "run/input.h"
+#include "run/layers.h"
 #include "sections/volume_sections.h"
 #include "stitch/stitch.h"
 

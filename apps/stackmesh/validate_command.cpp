@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "commands.h"
 #include "options.h"
-#include "pipeline/validate_run.h"
 #include "report/comparison.h"
+#include "run/validate_run.h"
 
 namespace stackmesh::app {
 namespace {

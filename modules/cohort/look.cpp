@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "base/sha256.h"
-#include "pipeline/input.h"
-#include "pipeline/provenance.h"
+#include "run/input.h"
+#include "run/provenance.h"
 
 namespace stackmesh {
 namespace {

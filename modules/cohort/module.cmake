@@ -10,6 +10,6 @@ stackmesh_module(cohort COMPONENT Io
   SOURCES table.cpp cohort_case.cpp manifest.cpp records.cpp cohort_folder.cpp look.cpp child.cpp run_cases.cpp slurm.cpp
           collect.cpp outliers.cpp cohort_files.cpp cohort_page.cpp thumbnail.cpp png.cpp
   HEADERS table.h cohort_case.h manifest.h cohort_folder.h look.h run_cases.h slurm.h collect.h outliers.h
-  USES base model meshio report pipeline
+  USES base model meshio report run
   PRIVATE nlohmann_json::nlohmann_json ZLIB::ZLIB)
 target_sources(stackmesh_cohort PRIVATE ${cohort_cpp})

@@ -2,7 +2,7 @@
 add_library(stackmesh_core INTERFACE)
 target_link_libraries(stackmesh_core INTERFACE stackmesh_mesh)
 add_library(stackmesh_io INTERFACE)
-target_link_libraries(stackmesh_io INTERFACE stackmesh_core stackmesh_pipeline stackmesh_image stackmesh_meshio)
+target_link_libraries(stackmesh_io INTERFACE stackmesh_core stackmesh_run stackmesh_image stackmesh_meshio)
 foreach(component core io)
   add_library(stackmesh::${component} ALIAS stackmesh_${component})
   set_target_properties(stackmesh_${component} PROPERTIES EXPORT_NAME ${component})

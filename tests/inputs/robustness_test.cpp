@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "inputs.h"
-#include "pipeline/input.h"
+#include "run/input.h"
 
 namespace {
 

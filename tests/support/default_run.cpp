@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/monitor.h"
-#include "pipeline/mesh_run.h"
+#include "run/mesh_run.h"
 
 namespace stackmesh::testing_support {
 namespace {

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "files.h"
 #include "meshio/read_mesh.h"
-#include "pipeline/validate_run.h"
+#include "run/validate_run.h"
 #include "shapes.h"
 
 namespace stackmesh {

@@ -1,4 +1,4 @@
-#include "pipeline/solve_with_calculix.h"
+#include "run/solve_with_calculix.h"
 
 #include <fcntl.h>
 #include <signal.h>

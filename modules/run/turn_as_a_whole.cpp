@@ -1,4 +1,4 @@
-#include "pipeline/turn_as_a_whole.h"
+#include "run/turn_as_a_whole.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "pipeline/input.h"
+#include "run/input.h"
 
 #include <algorithm>
 #include <cstdio>

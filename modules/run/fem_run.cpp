@@ -1,4 +1,4 @@
-#include "pipeline/fem_run.h"
+#include "run/fem_run.h"
 
 #include <algorithm>
 #include <chrono>
@@ -28,13 +28,13 @@
 #include "meshio/read_mesh.h"
 #include "model/label_table.h"
 #include "model/space.h"
-#include "pipeline/complete_report.h"
-#include "pipeline/mesh_product.h"
-#include "pipeline/output_files.h"
-#include "pipeline/provenance.h"
-#include "pipeline/report_names.h"
-#include "pipeline/solve_with_calculix.h"
 #include "report/html_report.h"
+#include "run/complete_report.h"
+#include "run/mesh_product.h"
+#include "run/output_files.h"
+#include "run/provenance.h"
+#include "run/report_names.h"
+#include "run/solve_with_calculix.h"
 #include "validate/check_volume.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"

@@ -1,4 +1,4 @@
-#include "pipeline/mesh_run.h"
+#include "run/mesh_run.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,12 +12,12 @@
 #include "mesh/voids.h"
 #include "model/label_table.h"
 #include "model/space.h"
-#include "pipeline/complete_report.h"
-#include "pipeline/mesh_product.h"
-#include "pipeline/output_files.h"
-#include "pipeline/provenance.h"
-#include "pipeline/report_names.h"
 #include "report/html_report.h"
+#include "run/complete_report.h"
+#include "run/mesh_product.h"
+#include "run/output_files.h"
+#include "run/provenance.h"
+#include "run/report_names.h"
 
 namespace stackmesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/mesh_product.h"
+#include "run/mesh_product.h"
 
 #include <utility>
 

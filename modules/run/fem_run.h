@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/mesh_run.h"
+#include "run/mesh_run.h"
 
 namespace stackmesh {
 

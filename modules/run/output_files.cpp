@@ -1,4 +1,4 @@
-#include "pipeline/output_files.h"
+#include "run/output_files.h"
 
 #include <filesystem>
 
@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "meshio/write_mesh.h"
-#include "pipeline/mesh_run.h"
-#include "pipeline/report_names.h"
+#include "run/mesh_run.h"
+#include "run/report_names.h"
 
 namespace stackmesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/complete_report.h"
+#include "run/complete_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,10 +9,10 @@
 #include "base/monitor.h"
 #include "mesh/mesh.h"
 #include "meshio/write_mesh.h"
-#include "pipeline/input.h"
-#include "pipeline/layers.h"
-#include "pipeline/mesh_product.h"
 #include "report/run_report.h"
+#include "run/input.h"
+#include "run/layers.h"
+#include "run/mesh_product.h"
 
 namespace stackmesh {
 

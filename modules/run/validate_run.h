@@ -6,8 +6,8 @@
 
 #include "base/monitor.h"
 #include "meshio/read_mesh.h"
-#include "pipeline/input.h"
 #include "report/run_report.h"
+#include "run/input.h"
 #include "sections/extract.h"
 
 namespace stackmesh {

@@ -1,4 +1,4 @@
-#include "pipeline/validate_run.h"
+#include "run/validate_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +13,12 @@
 #include "base/text.h"
 #include "base/warning.h"
 #include "model/space.h"
-#include "pipeline/complete_report.h"
-#include "pipeline/output_files.h"
-#include "pipeline/provenance.h"
-#include "pipeline/report_names.h"
-#include "pipeline/turn_as_a_whole.h"
 #include "report/html_report.h"
+#include "run/complete_report.h"
+#include "run/output_files.h"
+#include "run/provenance.h"
+#include "run/report_names.h"
+#include "run/turn_as_a_whole.h"
 #include "validate/defects.h"
 #include "validate/overlap.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/provenance.h"
+#include "run/provenance.h"
 
 #include <glob.h>
 #include <sys/sysinfo.h>

@@ -1,4 +1,4 @@
-#include "pipeline/layers.h"
+#include "run/layers.h"
 
 #include "base/error.h"
 #include "model/label_table.h"
