@@ -11,7 +11,8 @@ add_custom_command(OUTPUT ${page_cpp}
   DEPENDS ${page_paths} ${CMAKE_CURRENT_SOURCE_DIR}/report/page/embed.cmake
   COMMENT "Embedding the report page" VERBATIM)
 stackmesh_module(report COMPONENT Io
-  SOURCES run_report.cpp comparison.cpp html_report.cpp draw_pictures.cpp page_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
+  SOURCES run_report.cpp comparison.cpp html_report.cpp draw_pictures.cpp page_text.cpp page_labels.cpp page_model.cpp
+          html_text.cpp section_cuts.cpp polylines.cpp display_mesh.cpp
           histograms.cpp worst_places.cpp label_colours.cpp packed.cpp surface_values.cpp
   HEADERS run_report.h comparison.h html_report.h surface_values.h
   USES base model validate fem
