@@ -356,6 +356,82 @@ void match_components(const LabelRuns& runs, const InterfaceComplex& complex, co
   locate_unmatched(runs, complex, points, boundaries, component_lost, piece_lost, row_label, rows);
 }
 
+/// What the walk through the voxel centres counted, of each label.
+void count_centres(const GridWalk& walk, const LabelVolume& volume, std::vector<LabelFidelity>& rows) {
+  const std::size_t labels = volume.labels.size();
+  for (std::size_t l = 1; l < labels; ++l) {
+    LabelFidelity& row = rows[l - 1];
+    row.label = volume.labels[l].number;
+    row.input_voxels = walk.input[l];
+    row.mesh_voxels = walk.mesh[l];
+    const std::size_t sum = walk.input[l] + walk.mesh[l];
+    row.wrong_centres = sum - 2 * walk.both[l];
+    row.wrong_centres_share =
+        walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
+    row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
+  }
+}
+
+/// Which label of the input each label of the mesh covers best.
+void find_best_matches(const GridWalk& walk, const LabelRuns& runs, const LabelVolume& volume,
+                       const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
+  const std::size_t labels = volume.labels.size();
+  for (std::size_t r = 0; r < row_label.size(); ++r) {
+    if (row_label[r] < 0) continue;
+    LabelFidelity& row = rows[row_label[r] - 1];
+    const Vec3& m = walk.row_middle[r];
+    row.middle = to_world(runs, runs.place(m.x, m.y, m.z));
+    for (std::size_t l = 1; l < labels; ++l) {
+      const std::size_t sum = walk.input[l] + walk.row_centres[r];
+      const double dice =
+          sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
+      if (dice > row.best_dice) row.best_dice = dice, row.best_match = volume.labels[l].number;
+    }
+  }
+}
+
+std::vector<Box> boxes_of(const std::vector<Corners>& triangles) {
+  std::vector<Box> boxes(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const Vec3& p : {triangles[t].a, triangles[t].b, triangles[t].c}) boxes[t].add(p);
+  return boxes;
+}
+
+/// By how much a label's surface is shifted as a whole against its voxels, in voxels along the volume's axes.
+void measure_shift(const LabelRuns& runs, const std::vector<Corners>& triangles, const std::vector<Box>& boxes,
+                   const std::vector<FaceStrip>& faces, const FidelityOptions& options, LabelFidelity& row) {
+  const std::vector<Vec3> all_round = sample_faces(runs, faces, kShiftSamples, options.seed, false);
+  std::vector<std::int32_t> nearest;
+  distances_of(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
+  const double voxel = std::max({runs.spacing_mm[0], runs.spacing_mm[1], runs.spacing_mm[2]});
+  if (const auto shift = nearest.empty() ? std::nullopt : fit_shift(all_round, nearest, triangles, voxel)) {
+    const double along[3] = {shift->x, shift->y, shift->z};
+    double by_axis[3];
+    for (int k = 0; k < 3; ++k) by_axis[runs.axis[k]] = along[k] / runs.spacing_mm[k];
+    row.offset_voxels = Vec3{by_axis[0], by_axis[1], by_axis[2]};
+  }
+}
+
+/// Distances between a label's voxel faces and its surface, both ways, and of its surface from the band.
+/// @param rounding_mm what is not outside the band yet
+void measure_distances(const LabelRuns& runs, const std::vector<Corners>& triangles,
+                       const std::vector<FaceStrip>& faces, const std::vector<Rectangle>& band, double rounding_mm,
+                       const FidelityOptions& options, LabelFidelity& row) {
+  const std::vector<Box> boxes = boxes_of(triangles);
+  const std::vector<Vec3> from_faces = sample_faces(runs, faces, options.face_samples, options.seed);
+  row.distance_samples = from_faces.size();
+  row.distance_mm = distribution(distances_of(from_faces, triangles, boxes, options.threads, triangle_distance2));
+  if (!triangles.empty() && !faces.empty()) measure_shift(runs, triangles, boxes, faces, options, row);
+
+  const std::vector<Rectangle> rectangles = rectangles_of(runs, faces);
+  const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
+  row.reverse_distance_samples = from_surface.size();
+  row.reverse_distance_mm =
+      distribution(distances_of(from_surface, rectangles, boxes_of(rectangles), options.threads, rectangle_distance2));
+  row.band_distance_mm = band_distance(
+      distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
+}
+
 }  // namespace
 
 std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const LabelVolume& volume,
@@ -380,32 +456,11 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
   for (const Vec3& p : complex.points) points.push_back(runs.to_grid(p));
 
   std::vector<LabelFidelity> rows(labels > 0 ? labels - 1 : 0);
-  {
+  {  // the walk is large, and no longer needed when distances are measured
     const GridWalk walk = walk_grid(complex, boundaries, runs, points, row_label, labels, options.threads);
-    for (std::size_t l = 1; l < labels; ++l) {
-      LabelFidelity& row = rows[l - 1];
-      row.label = volume.labels[l].number;
-      row.input_voxels = walk.input[l];
-      row.mesh_voxels = walk.mesh[l];
-      const std::size_t sum = walk.input[l] + walk.mesh[l];
-      row.wrong_centres = sum - 2 * walk.both[l];
-      row.wrong_centres_share =
-          walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
-      row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
-    }
+    count_centres(walk, volume, rows);
     match_components(runs, complex, points, boundaries, walk, row_label, rows);
-    for (std::size_t r = 0; r < row_label.size(); ++r) {
-      if (row_label[r] < 0) continue;
-      LabelFidelity& row = rows[row_label[r] - 1];
-      const Vec3& m = walk.row_middle[r];
-      row.middle = to_world(runs, runs.place(m.x, m.y, m.z));
-      for (std::size_t l = 1; l < labels; ++l) {
-        const std::size_t sum = walk.input[l] + walk.row_centres[r];
-        const double dice =
-            sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
-        if (dice > row.best_dice) row.best_dice = dice, row.best_match = volume.labels[l].number;
-      }
-    }
+    find_best_matches(walk, runs, volume, row_label, rows);
   }
 
   std::vector<std::vector<std::int32_t>> of_row(boundaries.labels.size());
@@ -421,42 +476,15 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
   double rounding_mm = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) rounding_mm = std::min(rounding_mm, 1e-4 * (runs.spacing_mm[k] + 2 * wider[k]));
   for (std::size_t l = 1; l < labels; ++l) {
-    LabelFidelity& row = rows[l - 1];
     std::vector<Corners> triangles;
-    std::vector<Box> boxes;
     if (label_row[l] >= 0)
       for (const std::int32_t t : of_row[label_row[l]]) {
         const auto& v = complex.triangles[t].v;
         const bool below = boundaries.row[t][0] == label_row[l];  // outwards, but for a mirrored grid
         triangles.push_back({points[v[0]], points[v[below ? 1 : 2]], points[v[below ? 2 : 1]]});
-        boxes.emplace_back();
-        for (const std::int32_t p : v) boxes.back().add(points[p]);
       }
-    const std::vector<Vec3> from_faces = sample_faces(runs, faces[l], options.face_samples, options.seed);
-    row.distance_samples = from_faces.size();
-    row.distance_mm = distribution(distances_of(from_faces, triangles, boxes, options.threads, triangle_distance2));
-    if (!triangles.empty() && !faces[l].empty()) {
-      const std::vector<Vec3> all_round = sample_faces(runs, faces[l], kShiftSamples, options.seed, false);
-      std::vector<std::int32_t> nearest;
-      distances_of(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
-      const double voxel = std::max({runs.spacing_mm[0], runs.spacing_mm[1], runs.spacing_mm[2]});
-      if (const auto shift = nearest.empty() ? std::nullopt : fit_shift(all_round, nearest, triangles, voxel)) {
-        const double along[3] = {shift->x, shift->y, shift->z};
-        double by_axis[3];
-        for (int k = 0; k < 3; ++k) by_axis[runs.axis[k]] = along[k] / runs.spacing_mm[k];
-        row.offset_voxels = Vec3{by_axis[0], by_axis[1], by_axis[2]};
-      }
-    }
-
-    const std::vector<Rectangle> rectangles = rectangles_of(runs, faces[l]);
-    boxes = boxes_of(rectangles);
-    const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
-    row.reverse_distance_samples = from_surface.size();
-    row.reverse_distance_mm =
-        distribution(distances_of(from_surface, rectangles, boxes, options.threads, rectangle_distance2));
-    const std::vector<Rectangle> band = boxes_of_band(runs, bands[l], wider_mm);
-    row.band_distance_mm = band_distance(
-        distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
+    measure_distances(runs, triangles, faces[l], boxes_of_band(runs, bands[l], wider_mm), rounding_mm, options,
+                      rows[l - 1]);
   }
   return rows;
 }
