@@ -105,12 +105,13 @@ struct LabelMesh {
 /// There is no valid mesh; `partial` says how far it came and holds the surface that was refused.
 class MeshRefused : public Error {
  public:
-  MeshRefused(const Refusal& why, LabelMesh partial, const std::string& where)
+  /// @param made becomes `partial` @param where the input, for the message
+  MeshRefused(const Refusal& why, LabelMesh made, const std::string& where)
       : Error(ErrorKind::no_result, why.problem, where, why.mend),
         refusal(why),
-        partial(std::make_shared<LabelMesh>(std::move(partial))) {}
-  Refusal refusal;
-  std::shared_ptr<LabelMesh> partial;
+        partial(std::make_shared<LabelMesh>(std::move(made))) {}
+  Refusal refusal;                     ///< why
+  std::shared_ptr<LabelMesh> partial;  ///< never null
 };
 
 /// Labels on a grid to a conforming mesh: sections, stitched (\cite wang2005, section 3), enhanced (section 4), filled
