@@ -186,7 +186,8 @@ class FemRun {
       report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model, o_.result));
     report.fem->accuracy = std::move(accuracy);
     if (report.fem->accuracy && !report.fem->accuracy->reached)
-      report.warnings.push_back({WarningCode::accuracy, "", not_reached(*report.fem->accuracy)});
+      report.warnings.push_back({WarningCode::accuracy, "set " + report.fem->accuracy->estimate.worst_set,
+                                 not_reached(*report.fem->accuracy)});
 
     MeshWriteOptions write = o_.mesh.write;
     for (const std::string& path : o_.mesh.outputs) {
@@ -270,7 +271,10 @@ class FemRun {
                    "give labels that carry their place in the world");
     }
     out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr);
-    for (const Warning& w : out.materials.warnings) out.warnings.push_back(w);
+    for (Warning& w : out.materials.warnings) {
+      if (w.where.empty()) w.where = o_.image;  // what is no label's is the image's
+      out.warnings.push_back(w);
+    }
     if (!plan_)
       out.warnings.push_back(
           {WarningCode::materials, "", "no --materials: decks that need materials carry placeholders (E = 1 MPa)"});

@@ -117,8 +117,8 @@ void GivenMesh::check(MeshProduct& product, RunReport& report) {
   if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
     mesh.mid.clear();
     mesh.wedge_mid.clear();
-    report.warnings.push_back(
-        {WarningCode::element_order, "", "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
+    report.warnings.push_back({WarningCode::element_order, report.input.path,
+                               "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
   }
   add_label_rows(report, product.labels);
   // A mesh whose parts have nodes of their own is judged as one body.
@@ -126,10 +126,11 @@ void GivenMesh::check(MeshProduct& product, RunReport& report) {
   if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {
     const std::string text = std::to_string(twins) + " nodes lie exactly on another one";
     if (o_.parts.empty()) {
-      report.warnings.push_back({WarningCode::coincident_nodes, "",
+      report.warnings.push_back({WarningCode::coincident_nodes, report.input.path,
                                  text + " and stay apart from it; --parts makes contact or ties of such faces"});
     } else {
-      report.warnings.push_back({WarningCode::coincident_nodes, "", text + ": they were joined to it before --parts"});
+      report.warnings.push_back(
+          {WarningCode::coincident_nodes, report.input.path, text + ": they were joined to it before --parts"});
       mesh = whole;
       walls_.clear();  // they name the nodes before
     }
@@ -138,8 +139,8 @@ void GivenMesh::check(MeshProduct& product, RunReport& report) {
   whole.faces = faces_of_tets(whole);
   judge(whole, report);
   if (!report.volume->conforms)
-    report.warnings.push_back(
-        {WarningCode::not_conforming, "", "the mesh does not conform: faces or edges of its tetrahedra do not match"});
+    report.warnings.push_back({WarningCode::not_conforming, report.input.path,
+                               "the mesh does not conform: faces or edges of its tetrahedra do not match"});
 }
 
 /// Its surface only for a report.
