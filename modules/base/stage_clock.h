@@ -12,7 +12,7 @@ namespace stackmesh {
 /// Times the stages of a run and tells the progress display of them. A stage that runs again adds to its time.
 class StageClock {
  public:
-  /// @param stages get the times; both outlive the clock
+  /// `stages` get the times; both references outlive the clock.
   StageClock(Monitor& progress, std::vector<StageTime>& stages) : progress_(progress), stages_(stages) {}
   /// Runs a stage, also when it throws, under the clock.
   /// @return what `stage` returns

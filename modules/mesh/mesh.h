@@ -109,7 +109,7 @@ struct LabelMesh {
 /// There is no valid mesh; `partial` says how far it came and holds the surface that was refused.
 class MeshRefused : public Error {
  public:
-  /// @param made becomes `partial` @param where the input, for the message
+  /// `made` becomes `partial`; `where` names the input in the message.
   MeshRefused(const Refusal& why, LabelMesh made, const std::string& where)
       : Error(ErrorKind::no_result, why.problem, where, why.mend),
         refusal(why),
