@@ -1,7 +1,8 @@
-# Labels, contours and intensities from files: NIfTI, NRRD, MetaImage, GIPL, PNG (zlib), TIFF (libtiff), DICOM (DCMTK; GDCM
+# Labels, contours and intensities from files: NIfTI, NRRD, MetaImage, GIPL, PNG (libpng), TIFF (libtiff), DICOM (DCMTK; GDCM
 # through ITK for compressed pixels), masks, .cnt.
 find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOGDCM)
 find_package(ZLIB REQUIRED)
+find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(DCMTK CONFIG REQUIRED)
 # Targets that a package imports are known in this folder only; what links to us from elsewhere needs them too.
@@ -19,7 +20,7 @@ stackmesh_module(image COMPONENT Io
           dicom_segmentation.cpp dicom_series.cpp dicom_pixels.cpp read_structure_set.cpp segments.cpp slicer_segments.cpp text_header.cpp
   HEADERS read_labels.h read_label_table.h read_image.h read_contours.h read_structure_set.h dicom_file.h dicom_series.h
   USES base model
-  PRIVATE ZLIB::ZLIB TIFF::TIFF DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
+  PRIVATE ZLIB::ZLIB PNG::PNG TIFF::TIFF DCMTK::dcmdata DCMTK::oflog DCMTK::ofstd)
 stackmesh_part(stackmesh-gdcm OF image SOURCES parts/gdcm_part.cpp PRIVATE ${ITK_LIBRARIES})
 target_include_directories(stackmesh-gdcm SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # Debian's ITK headers know no compiler but GCC
