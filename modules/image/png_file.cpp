@@ -88,11 +88,8 @@ void read_header(png_structp png, png_infop info) {
 /// Chooses numbers as they are stored: those of fewer than 8 bits as a byte each, not stretched, and those of 16 bits
 /// in this machine's byte order.
 void choose_numbers(png_structp png, png_infop info) {
-  const std::uint16_t one = 1;
-  unsigned char first = 0;
-  std::memcpy(&first, &one, 1);
   png_set_packing(png);
-  if (first == 1) png_set_swap(png);
+  if (!is_big_endian_machine()) png_set_swap(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
 }
