@@ -42,6 +42,7 @@ struct PngState {
   std::size_t left;
   unsigned char* pixels = nullptr;  ///< the first row, while rows are read
   std::size_t row_bytes = 0;
+  bool bad_header = false;
   bool too_few = false;  ///< the pixel stream ends before the last row
   bool bad_end = false;  ///< the pixel stream is damaged behind the last row
 };
@@ -60,8 +61,10 @@ void give_bytes(png_structp png, png_bytep out, std::size_t count) {
 
 /// Every error ends the decoding. Its text only chooses what our message says of the damage.
 [[noreturn]] void on_error(png_structp png, png_const_charp text) {
-  state_of(png).too_few =
-      std::strstr(text, "Not enough image data") != nullptr || std::strstr(text, "IEND: out of place") != nullptr;
+  PngState& state = state_of(png);
+  const auto says = [&](const char* part) { return std::strstr(text, part) != nullptr; };
+  state.bad_header = says("Invalid IHDR data");
+  state.too_few = says("Not enough image data") || says("IEND: out of place");
   png_longjmp(png, 1);
 }
 
@@ -135,10 +138,10 @@ class PngReader {
       fail_input("the PNG has a colour palette, so its pixels are colours and not label numbers", path_,
                  "save it as 8- or 16-bit greyscale with the label as grey value");
     const png_uint_32 width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
-    if (!read)
-      refuse(width > kLargestSide || height > kLargestSide || (width == 0) != (height == 0)
-                 ? "damaged (size in its header)"
-                 : "damaged (header)");
+    if (state_.bad_header && (width > kLargestSide || height > kLargestSide || width == 0 || height == 0))
+      damaged("damaged (size in its header)", path_);
+    if (state_.bad_header) damaged("damaged (header)", path_);
+    if (!read) refuse("damaged (header)");
     image_.width = width;
     image_.height = height;
     number_bytes_ = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
