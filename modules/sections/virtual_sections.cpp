@@ -194,12 +194,14 @@ std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int t
     given[gap] = 1;
     between[gap].push_back(layer_section(layer, kTolerance_px));
   });
-  for (const OpenGap& g : open)
-    warnings.push_back({WarningCode::open_wall, "",
-                        "between the sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " +
-                            text_of(stack.sections[g.gap + 1].z_mm) +
-                            " mm contours that lie within others cannot be kept inside: a wall is open over about " +
+  for (const OpenGap& g : open) {
+    const std::string sections = "sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " +
+                                 text_of(stack.sections[g.gap + 1].z_mm) + " mm";
+    warnings.push_back({WarningCode::open_wall, sections,
+                        "between the " + sections +
+                            " contours that lie within others cannot be kept inside: a wall is open over about " +
                             text_of(g.area_mm2) + " mm2"});
+  }
   for (std::size_t end : {std::size_t{0}, gaps + 1})  // the stitcher closes the last of them
     between[end].erase(
         std::remove_if(between[end].begin(), between[end].end(), [](const Section& s) { return s.edges.empty(); }),

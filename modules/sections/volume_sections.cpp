@@ -38,9 +38,10 @@ VolumeSections extract_faired(const LabelVolume& volume, int axis, int virtual_p
     for (int gap : other)
       for (int k = gap * period + 1; k < (gap + 1) * period; ++k) places.free[k] = 0;
     out.contours = extract_sections(volume, contours, progress, &places);
-    out.warnings.push_back({WarningCode::held_to_slices, "",
-                            "between slices " + std::to_string(other.front() + 1) + " and " +
-                                std::to_string(other.front() + 2) +
+    const std::string slices =
+        "slices " + std::to_string(other.front() + 1) + " and " + std::to_string(other.front() + 2);
+    out.warnings.push_back({WarningCode::held_to_slices, slices,
+                            "between " + slices +
                                 (other.size() > 1 ? " and in " + std::to_string(other.size() - 1) + " more gaps" : "") +
                                 " smooth sections would join or split pieces of a label: they keep closer to the "
                                 "interpolated slices there"});
