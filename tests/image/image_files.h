@@ -212,7 +212,9 @@ inline Bytes gipl(float sx = 1, float sy = 1, float sz = 1, std::uint32_t magic 
 }
 
 /// A PNG whose pixel stream is given as it is: colour type 0 grey, 2 RGB, 3 palette, 4 grey with opacity, 6 RGBA.
-inline Bytes png_of_stream(int width, int height, int bits, int colour, const Bytes& stream, bool interlaced = false) {
+/// @param first so many bytes of the stream are in a chunk of their own, the rest in a second one
+inline Bytes png_of_stream(int width, int height, int bits, int colour, const Bytes& stream, bool interlaced = false,
+                           std::size_t first = Bytes::npos) {
   const auto chunk = [](const Bytes& type, const Bytes& data) {
     return big<std::uint32_t>(data.size()) + type + data + big(crc32(type + data));
   };
@@ -220,7 +222,8 @@ inline Bytes png_of_stream(int width, int height, int bits, int colour, const By
   return Bytes("\x89PNG\r\n\x1a\n") +
          chunk("IHDR", big<std::uint32_t>(width) + big<std::uint32_t>(height) + Bytes(1, static_cast<char>(bits)) +
                            Bytes(1, static_cast<char>(colour)) + Bytes(2, '\0') + (interlaced ? '\1' : '\0')) +
-         palette + chunk("iCCP", "bad profile") + chunk("IDAT", stream) + chunk("IEND", "");
+         palette + chunk("iCCP", "bad profile") + chunk("IDAT", stream.substr(0, first)) +
+         (first < stream.size() ? chunk("IDAT", stream.substr(first)) : "") + chunk("IEND", "");
 }
 /// `rows` holds the raw bytes of all rows.
 inline Bytes png(int width, int height, int bits, int colour, const Bytes& rows) {

@@ -273,13 +273,17 @@ TEST_F(StoredNumbers, DamageOfAPngIsToldApart) {
   }
   Bytes checked = stream;  // by its own check sum, in its last four bytes
   checked.back() ^= 1;
-  expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, checked)), {"damaged (pixels)"});
+  for (std::size_t first : {std::size_t{3}, checked.size() - 4, checked.size()})
+    expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, checked, false, first)), {"damaged (pixels)"});
   expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, zlib(Bytes("\0\1\2\5\3\4", 6)))), {"damaged (pixels)"});
   expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, zlib(rows.substr(0, 5)))), {"too few pixels"});
   expect_unreadable(write("a.png", png_of_stream(999999, 999999, 8, 0, stream)), {"too few pixels"});
   expect_unreadable(write("a.png", png_of_stream(1000001, 2, 8, 0, stream)), {"size in its header"});
   expect_unreadable(write("a.png", png_of_stream(2, 2, 3, 0, stream)), {"damaged (header)"});
-  // What follows the pixels is no damage.
+  // Neither chunks of any length nor what follows the pixels is damage.
+  for (std::size_t first = 0; first < stream.size(); ++first)
+    EXPECT_EQ(numbers_of(read_label_volume(write("a.png", png_of_stream(2, 2, 8, 0, stream, false, first)))),
+              (std::vector<int>{1, 2, 3, 4}));
   for (const Bytes& more : {zlib(rows + Bytes(9, '\7')), stream + "more"})
     EXPECT_EQ(numbers_of(read_label_volume(write("a.png", png_of_stream(2, 2, 8, 0, more)))),
               (std::vector<int>{1, 2, 3, 4}));
