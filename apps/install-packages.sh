@@ -8,7 +8,7 @@ program=(
   g++ cmake ninja-build ccache
   libopencv-dev # the small -dev packages of its parts lack OpenCVConfig.cmake
   libcgal-dev libtet1.5-dev libopenmesh-dev
-  libinsighttoolkit5-dev libdcmtk-dev libtiff-dev
+  libinsighttoolkit5-dev libdcmtk-dev libnifti2-dev libpng-dev libtiff-dev
   libexodusii-dev libmedc-dev # .exo and .med; Debian builds both upon Open MPI, which comes along and is not used
   libssl-dev # libcrypto, for digests
   libtbb-dev libcli11-dev nlohmann-json3-dev libpugixml-dev

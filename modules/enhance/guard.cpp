@@ -10,6 +10,8 @@
 namespace stackmesh {
 namespace {
 
+// Shares of the clearance: nearer is contact, whatever was before; and well above that, and above rounding.
+constexpr double kTouching = 1e-9, kClearlyApart = 1e-3;
 constexpr double kWide = -0.5;  // cosine: two sheets further apart than this did not just turn through each other
 
 /// On which side of the triangle p q x the point y lies: the sign.
@@ -138,8 +140,6 @@ double Guard::narrowest_before(const Change& c) const {
 bool Guard::was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, double squared) const {
   const Corners3 t = corners(w, nullptr);
   const double gap = (1 + 1e-6) * std::sqrt(squared);  // often they are exactly as near
-  for (std::int32_t r : *c.removed)
-    if (shared_corners(mesh_.triangles[r].v, w).count > 0) return true;
   for (std::int32_t r : *c.removed) {
     const Corners3 s = corners(mesh_.triangles[r].v, nullptr);
     if (!certainly_apart(s, t, gap) && squared_distance(s, t) <= squared) return true;
@@ -177,10 +177,12 @@ bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s
   const SharedCorners h = shared_corners(v, w);
   const Corners3 t = corners(w, &c);
   if (h.count == 0) {
-    if (certainly_apart(s, t, c.clearance_mm)) return true;
+    // Triangles beside those that go were as near, at their common corner: for them it is enough not to touch.
+    const bool beside = is_beside_removed(w);
+    if (certainly_apart(s, t, (beside ? kClearlyApart : 1) * c.clearance_mm)) return true;
     if (triangles_meet(s, t, h)) return ++refused_contact, false;
-    const double d = squared_distance(s, t), floor = 1e-9 * c.clearance_mm;
-    if (d > c.clearance_mm * c.clearance_mm || (d > floor * floor && was_as_near(c, w, d))) return true;
+    const double d = squared_distance(s, t), floor = kTouching * c.clearance_mm;
+    if (d > c.clearance_mm * c.clearance_mm || (d > floor * floor && (beside || was_as_near(c, w, d)))) return true;
     return ++refused_clearance, false;
   }
   if (h.count == 2) {
@@ -197,19 +199,33 @@ bool Guard::pair_allowed(const std::array<std::int32_t, 3>& v, const Corners3& s
 bool Guard::allows(const Change& c) {
   stop_if_cancelled();
   if (stamp_.size() < mesh_.triangles.size()) stamp_.resize(mesh_.triangles.size() * 5 / 4 + 16, 0);
+  // A new vertex has no place in the mesh yet.
+  if (corner_stamp_.size() < mesh_.points.size() + 1) corner_stamp_.resize(mesh_.points.size() * 5 / 4 + 16, 0);
   ++now_;
-  for (std::int32_t r : *c.removed) stamp_[r] = now_;
-  const auto& added = *c.added;
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    const Corners3 s = corners(added[i], &c);
-    for (std::size_t j = i + 1; j < added.size(); ++j)
-      if (!pair_allowed(added[i], s, added[j], c)) return false;
-    const bool ok = grid_.query(s, c.clearance_mm, [&](std::int32_t t) {
-      return stamp_[t] == now_ || pair_allowed(added[i], s, mesh_.triangles[t].v, c);
-    });
-    if (!ok) return false;
+  for (std::int32_t r : *c.removed) {
+    stamp_[r] = now_;
+    for (std::int32_t v : mesh_.triangles[r].v) corner_stamp_[v] = now_;
   }
-  return true;
+  const auto& added = *c.added;
+  new_corners_.clear();
+  new_boxes_.clear();
+  for (const auto& v : added) {
+    new_corners_.push_back(corners(v, &c));
+    new_boxes_.push_back(TriangleGrid::box_of(new_corners_.back(), c.clearance_mm));
+  }
+  for (std::size_t i = 0; i < added.size(); ++i)
+    for (std::size_t j = i + 1; j < added.size(); ++j)
+      if (!pair_allowed(added[i], new_corners_[i], added[j], c)) return false;
+  if (added.empty()) return true;
+  TriangleGrid::Box all = new_boxes_[0];
+  for (const TriangleGrid::Box& b : new_boxes_) all.include(b);
+  return grid_.query(all, [&](std::int32_t t) {
+    if (stamp_[t] == now_) return true;
+    const TriangleGrid::Box& box = grid_.box(t);
+    for (std::size_t i = 0; i < added.size(); ++i)
+      if (box.meets(new_boxes_[i]) && !pair_allowed(added[i], new_corners_[i], mesh_.triangles[t].v, c)) return false;
+    return true;
+  });
 }
 
 void Guard::update(const std::vector<std::int32_t>& touched) {
@@ -307,7 +323,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
       const std::int32_t i = suspects[n];
       if (spoiled(i)) mine.push_back(i);
       if (by_bucket) continue;
-      grid.query(at(points, i), 0.5 * clearance[i], [&](std::int32_t j) {
+      grid.query(grid.box(i), [&](std::int32_t j) {
         if (j != i && !(is_suspect[j] && j < i)) test(std::min(i, j), std::max(i, j));
         return true;
       });

@@ -20,10 +20,28 @@ class TriangleGrid {
   void insert(std::int32_t t, const Corners3& corners);
   void remove(std::int32_t t);
 
-  /// Calls visit(t) for every triangle whose box comes within `margin` of the corners' box; a triangle may
-  /// come twice, rarely. visit returns false to stop. @return false if stopped.
+  struct Box {
+    std::array<float, 3> low, high;
+    std::array<std::int32_t, 3> cell = {0, 0, 0};  ///< of the low corner
+    bool meets(const Box& o) const {
+      return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] && o.low[1] <= high[1] &&
+             low[2] <= o.high[2] && o.low[2] <= high[2];
+    }
+    void include(const Box& o) {
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], o.low[k]);
+        high[k] = std::max(high[k], o.high[k]);
+      }
+    }
+  };
+  /// The corners' box, wider by `margin` to all sides, rounded outwards.
+  static Box box_of(const Corners3& corners, double margin);
+  const Box& box(std::int32_t t) const { return boxes_[t]; }
+
+  /// Calls visit(t) for every triangle whose box meets the box; a triangle may come twice, rarely. visit returns false
+  /// to stop. @return false if stopped.
   template <class Visit>
-  bool query(const Corners3& corners, double margin, Visit visit) const;
+  bool query(const Box& box, Visit visit) const;
 
   /// Calls visit(i, j), i < j, for every two triangles whose boxes meet in cells of the buckets from first to last; a
   /// pair may come twice, rarely.
@@ -32,20 +50,11 @@ class TriangleGrid {
   void pairs(std::size_t first, std::size_t last, std::vector<std::int32_t>& buffer, Visit visit) const;
 
  private:
-  struct Box {
-    std::array<float, 3> low, high;
-    std::array<std::int32_t, 3> cell = {0, 0, 0};  ///< of the low corner
-    bool meets(const Box& o) const {
-      return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] && o.low[1] <= high[1] &&
-             low[2] <= o.high[2] && o.low[2] <= high[2];
-    }
-  };
   /// A bucket's head; what does not fit is in blocks behind it.
   struct Block {
     std::int32_t count = 0, next = -1;
     std::array<std::int32_t, 6> items;
   };
-  static Box box_of(const Corners3& c, double margin);
   std::int32_t cell(float x) const {
     const float y = x * inverse_;
     const auto i = static_cast<std::int32_t>(y);
@@ -112,11 +121,17 @@ class Guard {
                       const Corners3& t, const SharedCorners& h, double cosine, const Change& c) const;
   double narrowest_before(const Change& c) const;
   bool was_as_near(const Change& c, const std::array<std::int32_t, 3>& w, double squared) const;
+  /// True for a triangle that shares a corner with those that go.
+  bool is_beside_removed(const std::array<std::int32_t, 3>& w) const {
+    return corner_stamp_[w[0]] == now_ || corner_stamp_[w[1]] == now_ || corner_stamp_[w[2]] == now_;
+  }
 
   ComplexMesh& mesh_;
   TriangleGrid grid_;
   double cosine_limit_;
-  std::vector<std::uint32_t> stamp_;
+  std::vector<std::uint32_t> stamp_, corner_stamp_;  ///< now_: goes with the change at hand; is a corner of what goes
+  std::vector<Corners3> new_corners_;
+  std::vector<TriangleGrid::Box> new_boxes_;
   std::uint32_t now_ = 0;
   std::size_t known_ = 0;  ///< triangles that the grid has seen
 };
@@ -146,8 +161,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
 std::size_t count_contacts(const ComplexMesh& mesh, int threads);
 
 template <class Visit>
-bool TriangleGrid::query(const Corners3& corners, double margin, Visit visit) const {
-  const Box b = box_of(corners, margin);
+bool TriangleGrid::query(const Box& b, Visit visit) const {
   const std::int32_t lo[3] = {cell(b.low[0]), cell(b.low[1]), cell(b.low[2])},
                      hi[3] = {cell(b.high[0]), cell(b.high[1]), cell(b.high[2])};
   for (std::int32_t i = lo[0]; i <= hi[0]; ++i)

@@ -15,6 +15,7 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 const double kFolded = std::cos(155 * kDegree);  // two triangles whose normals are further apart
 const double kSqrt2 = std::sqrt(2.0);
+constexpr double kSameGrid = 1.25;  // ratio of mean edge lengths for which one grid serves
 constexpr double kMuchTooLong = 2;  // normalised length of an edge that blocks should have split
 
 /// Works on a mesh, or on a block of one.
@@ -94,14 +95,21 @@ class Remesher {
  private:
   using Edge = std::array<std::int32_t, 2>;
 
+  /// The guard's grid follows the size of the triangles: made anew where their mean edge is far from what it was made
+  /// for.
   void regrid() {
     double sum = 0;
     std::size_t count = 0;
-    for (const Edge& e : mesh_.edges()) {
-      sum += ops_.length(e[0], e[1]);
-      ++count;
+    for (const MeshTriangle& t : mesh_.triangles) {
+      if (t.patch < 0) continue;
+      for (int k = 0; k < 3; ++k) sum += ops_.length(t.v[k], t.v[(k + 1) % 3]);
+      count += 3;
     }
-    if (count) ops_.guard.rebuild(1.3 * sum / static_cast<double>(count));
+    if (count == 0) return;
+    const double mean = sum / static_cast<double>(count);
+    if (mean < kSameGrid * grid_edge_ && grid_edge_ < kSameGrid * mean) return;
+    ops_.guard.rebuild(1.3 * mean);
+    grid_edge_ = mean;
   }
 
   double ratio(const Edge& e) const { return ops_.length(e[0], e[1]) / ops_.asked(e[0], e[1]); }
@@ -120,6 +128,7 @@ class Remesher {
 
   void split_long() {
     for (int pass = 0; pass < 12; ++pass) {
+      regrid();
       auto list = ranked([](double r) { return r > kSqrt2; });
       std::size_t done = 0;
       for (auto it = list.rbegin(); it != list.rend(); ++it)
@@ -136,7 +145,8 @@ class Remesher {
     double tried = 0;
     int pass = 0;
     for (const double below : stages) {
-      if (++pass > 1 && below > tried) regrid();  // the grid follows the size of the triangles
+      ++pass;
+      regrid();
       std::size_t done = 0;
       for (const auto& [r, e] : ranked([&](double x) { return x < below; })) {
         const auto [a, b] = e;
@@ -161,6 +171,7 @@ class Remesher {
 
   void flip_all(double gain, bool valence, int passes) {
     for (int pass = 0; pass < passes; ++pass) {
+      regrid();
       std::size_t done = 0;
       for (const Edge& e : mesh_.edges())
         if (mesh_.has_edge(e[0], e[1])) done += ops_.flip(e[0], e[1], gain, valence && pass == 0);
@@ -357,6 +368,7 @@ class Remesher {
   const Reference& reference_;
   const RemeshOptions& o_;
   LocalOperations ops_;
+  double grid_edge_ = 0;  ///< mean edge length that the guard's grid was made for
   /// the face of the reference where each sample of a triangle last was
   std::vector<std::array<std::int32_t, 3>> last_;
 };

@@ -240,7 +240,7 @@ std::vector<double> wall_thickness(const ComplexMesh& mesh, double reach_mm, int
       const Vec3 from = mesh.points[v], d = (side == 0 ? -1.0 : 1.0) * n;
       for (double near = 0; near < std::min(reach_mm, thin[v]); near += cell) {  // piece by piece: most rays end soon
         const Vec3 start = from + near * d, end = from + std::min(near + cell, reach_mm) * d;
-        grid.query({start, end, end}, 0, [&](std::int32_t t) {
+        grid.query(TriangleGrid::box_of({start, end, end}, 0), [&](std::int32_t t) {
           const auto& w = mesh.triangles[t].v;
           if (w[0] == v || w[1] == v || w[2] == v) return true;
           const Vec3 a = mesh.points[w[0]], e = mesh.points[w[1]] - a, f = mesh.points[w[2]] - a;

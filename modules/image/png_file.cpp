@@ -1,169 +1,195 @@
+#include <png.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
+#include <csetjmp>
 #include <cstring>
 #include <new>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/slice_image.h"
 
 namespace stackmesh {
 namespace {
 
+constexpr png_uint_32 kLargestSide = 1000000;
+
 [[noreturn]] void damaged(const std::string& what, const std::string& path) {
   fail_input("the PNG file is " + what, path, "copy or export the file again");
 }
 
-std::uint32_t big_endian(const unsigned char* p) {
-  return static_cast<std::uint32_t>(p[0]) << 24 | static_cast<std::uint32_t>(p[1]) << 16 |
-         static_cast<std::uint32_t>(p[2]) << 8 | p[3];
-}
-
-struct Header {
-  std::uint64_t width = 0, height = 0;
-  int bits = 0, colour = 0, interlace = 0;
-};
-
-Header read_header(const unsigned char* p, const std::string& path) {
-  Header h = {big_endian(p), big_endian(p + 4), p[8], p[9], p[12]};
-  if (h.colour == 3)
-    fail_input("the PNG has a colour palette, so its pixels are colours and not label numbers", path,
-               "save it as 8- or 16-bit greyscale with the label as grey value");
-  const bool bits = h.bits == 8 || h.bits == 16 || (h.colour == 0 && (h.bits == 1 || h.bits == 2 || h.bits == 4));
-  const bool colour = h.colour == 0 || h.colour == 2 || h.colour == 4 || h.colour == 6;
-  if (!bits || !colour || p[10] != 0 || p[11] != 0 || h.interlace > 1) damaged("damaged (header)", path);
-  if (h.width == 0 || h.height == 0 || h.width > 1000000 || h.height > 1000000)
-    damaged("damaged (size in its header)", path);
-  return h;
-}
-
-/// first x, step x, first y, step y of a pass
-struct Pass {
-  std::uint64_t x = 0, dx = 1, y = 0, dy = 1;
-};
-
-/// Decompresses the pixel stream row by row, undoes the rows' filters, and puts the pixels where they belong.
-class PngDecoder {
- public:
-  PngDecoder(const std::vector<unsigned char>& stream, const Header& h, const std::string& path)
-      : h_(h),
-        path_(path),
-        samples_(h.colour == 0   ? 1
-                 : h.colour == 4 ? 2
-                 : h.colour == 2 ? 3
-                                 : 4),
-        bytes_(h.bits == 16 ? 2 : 1) {
-    z_.next_in = const_cast<unsigned char*>(stream.data());
-    z_.avail_in = static_cast<uInt>(stream.size());
-    if (inflateInit(&z_) != Z_OK) throw std::bad_alloc();
-    // Deflate cannot shrink data more than about 1032 times.
-    const double row = std::ceil(static_cast<double>(h.width) * samples_ * h.bits / 8);
-    if (row * static_cast<double>(h.height) > 1040.0 * static_cast<double>(stream.size()) + 4096)
-      damaged("damaged or truncated (too few pixels)", path_);
+/// What is wrong with the chunks of a file that libpng refuses; "": nothing.
+std::string fault_of_chunks(const std::vector<unsigned char>& bytes) {
+  for (std::size_t at = 8;;) {
+    if (bytes.size() - at < 12) return "truncated";
+    const std::size_t length = png_get_uint_32(&bytes[at]);
+    if (bytes.size() - at - 12 < length) return "truncated";
+    const unsigned char* type = &bytes[at + 4];
+    if (::crc32(0, type, static_cast<uInt>(length + 4)) != png_get_uint_32(type + 4 + length))
+      return "damaged (check sum)";
+    if (at == 8 && (length != 13 || std::memcmp(type, "IHDR", 4) != 0)) return "damaged (no header)";
+    if (std::memcmp(type, "IEND", 4) == 0) return "";
+    at += 12 + length;
   }
-  ~PngDecoder() { inflateEnd(&z_); }
-  PngDecoder(const PngDecoder&) = delete;
-  PngDecoder& operator=(const PngDecoder&) = delete;
+}
+
+/// What libpng's functions share with ours. It is plain data, because an error leaves them by longjmp, which destroys
+/// no objects.
+struct PngState {
+  const unsigned char* next;
+  std::size_t left;
+  unsigned char* pixels = nullptr;  ///< the first row, while rows are read
+  std::size_t row_bytes = 0;
+  bool bad_header = false;
+  bool too_few = false;  ///< the pixel stream ends before the last row
+  bool bad_end = false;  ///< the pixel stream is damaged behind the last row
+};
+
+PngState& state_of(png_structp png) {
+  return *static_cast<PngState*>(png_get_error_ptr(png));
+}
+
+void give_bytes(png_structp png, png_bytep out, std::size_t count) {
+  PngState& state = state_of(png);
+  if (count > state.left) png_error(png, "the file ends");
+  std::memcpy(out, state.next, count);
+  state.next += count;
+  state.left -= count;
+}
+
+/// Every error ends the decoding. Its text only chooses what our message says of the damage.
+[[noreturn]] void on_error(png_structp png, png_const_charp text) {
+  PngState& state = state_of(png);
+  const auto says = [&](const char* part) { return std::strstr(text, part) != nullptr; };
+  state.bad_header = says("Invalid IHDR data");
+  state.too_few = says("Not enough image data") || says("IEND: out of place");
+  png_longjmp(png, 1);
+}
+
+/// libpng only warns where the pixel stream is damaged behind the last row, which is where its check sum is. More data
+/// than the rows need is no damage.
+void on_warning(png_structp png, png_const_charp text) {
+  PngState& state = state_of(png);
+  if (state.pixels != nullptr && std::strstr(text, "Too much image data") == nullptr &&
+      std::strstr(text, "Extra compressed data") == nullptr)
+    state.bad_end = true;
+}
+
+/// Reads up to the pixels. All check sums must be right; what chunks of profiles, texts and times hold is not looked
+/// at.
+void read_header(png_structp png, png_infop info) {
+  png_set_user_limits(png, kLargestSide, kLargestSide);
+  png_set_benign_errors(png, 1);
+  png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+  png_set_option(png, PNG_MAXIMUM_INFLATE_WINDOW, PNG_OPTION_ON);  // some files declare a smaller one than they need
+  png_read_info(png, info);
+}
+
+/// Chooses numbers as they are stored: those of fewer than 8 bits as a byte each, not stretched, and those of 16 bits
+/// in this machine's byte order.
+void choose_numbers(png_structp png, png_infop info) {
+  png_set_packing(png);
+  if (!is_big_endian_machine()) png_set_swap(png);
+  png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+}
+
+/// Reads all rows, and the chunks behind them.
+void read_pixels(png_structp png, png_infop info) {
+  PngState& state = state_of(png);
+  const int passes = png_get_interlace_type(png, info) == PNG_INTERLACE_ADAM7 ? PNG_INTERLACE_ADAM7_PASSES : 1;
+  const png_uint_32 height = png_get_image_height(png, info);
+  for (int pass = 0; pass < passes; ++pass)
+    for (png_uint_32 y = 0; y < height; ++y) png_read_row(png, state.pixels + y * state.row_bytes, nullptr);
+  state.pixels = nullptr;
+  png_read_end(png, nullptr);
+}
+
+/// Runs one of the three functions above. This is the one place that libpng's longjmp comes back to: neither it nor
+/// they hold an object that needs destruction. false: libpng called on_error.
+bool succeeds(void (*step)(png_structp, png_infop), png_structp png, png_infop info) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  step(png, info);
+  return true;
+}
+
+class PngReader {
+ public:
+  PngReader(const std::vector<unsigned char>& bytes, const std::string& path)
+      : bytes_(bytes), path_(path), state_{bytes.data(), bytes.size()} {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state_, on_error, on_warning);
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+    if (info_ == nullptr) {
+      png_destroy_read_struct(&png_, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
+    png_set_read_fn(png_, nullptr, give_bytes);
+  }
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
 
   SliceImage run() {
-    image_.width = h_.width;
-    image_.height = h_.height;
-    image_.type = bytes_ == 2 ? VoxelType::u16 : VoxelType::u8;
-    image_.values.resize(h_.width * h_.height * bytes_);
-    static const Pass passes[7] = {{0, 8, 0, 8}, {4, 8, 0, 8}, {0, 4, 4, 8}, {2, 4, 0, 4},
-                                   {0, 2, 2, 4}, {1, 2, 0, 2}, {0, 1, 1, 2}};
-    if (h_.interlace)
-      for (const Pass& pass : passes) read_pass(pass);
-    else read_pass({});
-    unsigned char rest[64];
-    while (code_ == Z_OK) {  // the check sum of the stream, and whatever follows the last row
-      z_.next_out = rest;
-      z_.avail_out = sizeof rest;
-      code_ = inflate(&z_, Z_NO_FLUSH);
-    }
-    if (code_ != Z_STREAM_END) damaged("damaged (pixels)", path_);
+    const bool read = succeeds(read_header, png_, info_);
+    if (png_get_color_type(png_, info_) == PNG_COLOR_TYPE_PALETTE)
+      fail_input("the PNG has a colour palette, so its pixels are colours and not label numbers", path_,
+                 "save it as 8- or 16-bit greyscale with the label as grey value");
+    const png_uint_32 width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
+    if (state_.bad_header && (width > kLargestSide || height > kLargestSide || width == 0 || height == 0))
+      damaged("damaged (size in its header)", path_);
+    if (state_.bad_header) damaged("damaged (header)", path_);
+    if (!read) refuse("damaged (header)");
+    image_.width = width;
+    image_.height = height;
+    number_bytes_ = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
+    image_.type = number_bytes_ == 2 ? VoxelType::u16 : VoxelType::u8;
+    samples_ = png_get_channels(png_, info_);
+    // Deflate cannot shrink data more than about 1032 times.
+    const double row = std::ceil(static_cast<double>(image_.width) * samples_ * png_get_bit_depth(png_, info_) / 8);
+    if (row * static_cast<double>(image_.height) > 1040.0 * static_cast<double>(bytes_.size()) + 4096)
+      refuse("damaged or truncated (too few pixels)");
+    if (!succeeds(choose_numbers, png_, info_)) damaged("damaged (header)", path_);
+    decode();
     return std::move(image_);
   }
 
  private:
-  void read_pass(const Pass& pass) {
-    const auto count = [](std::uint64_t n, std::uint64_t first, std::uint64_t step) {
-      return n > first ? (n - first + step - 1) / step : 0;
-    };
-    const std::uint64_t columns = count(h_.width, pass.x, pass.dx), rows = count(h_.height, pass.y, pass.dy);
-    if (columns == 0) return;
-    const std::size_t pixel_bits = static_cast<std::size_t>(samples_) * static_cast<std::size_t>(h_.bits),
-                      length = (columns * pixel_bits + 7) / 8;
-    std::vector<unsigned char> row(1 + length), before(1 + length, 0), grey(columns * bytes_);
-    for (std::uint64_t y = 0; y < rows; ++y) {
-      inflate_row(row);
-      undo_filter(row, before, std::max<std::size_t>(1, pixel_bits / 8));
-      take_row(row, columns, pass.y + y * pass.dy, grey);
-      for (std::uint64_t x = 0; x < columns; ++x)
-        std::memcpy(image_.values.data() + ((pass.y + y * pass.dy) * h_.width + pass.x + x * pass.dx) * bytes_,
-                    grey.data() + x * bytes_, bytes_);
-      std::swap(row, before);
-    }
+  /// @param what is said where the chunks are whole
+  [[noreturn]] void refuse(const std::string& what) const {
+    const std::string chunks = fault_of_chunks(bytes_);
+    damaged(!chunks.empty() ? chunks : state_.too_few ? "damaged or truncated (too few pixels)" : what, path_);
   }
 
-  void inflate_row(std::vector<unsigned char>& row) {
-    z_.next_out = row.data();
-    z_.avail_out = static_cast<uInt>(row.size());
-    while (z_.avail_out > 0) {
-      if (code_ == Z_STREAM_END) damaged("damaged or truncated (too few pixels)", path_);
-      code_ = inflate(&z_, Z_NO_FLUSH);
-      if (code_ == Z_BUF_ERROR) damaged("damaged or truncated (too few pixels)", path_);
-      if (code_ != Z_OK && code_ != Z_STREAM_END) damaged("damaged (pixels)", path_);
-    }
-    if (row[0] > 4) damaged("damaged (pixels)", path_);
+  void decode() {
+    const std::size_t count = image_.width * image_.height;
+    state_.row_bytes = image_.width * static_cast<std::size_t>(samples_) * number_bytes_;
+    const std::size_t all = state_.row_bytes * image_.height, grey = count * number_bytes_;
+    require_memory(samples_ == 1 ? grey : all + grey,
+                   "a slice of " + std::to_string(image_.width) + " x " + std::to_string(image_.height) + " pixels",
+                   path_, "crop it");
+    image_.values.resize(grey);
+    std::vector<unsigned char> colours(samples_ == 1 ? 0 : all);
+    unsigned char* const pixels = samples_ == 1 ? image_.values.data() : colours.data();
+    state_.pixels = pixels;
+    const bool read = succeeds(read_pixels, png_, info_);
+    if (!read || state_.bad_end) refuse("damaged (pixels)");
+    if (samples_ == 1) return;
+    for (std::uint64_t y = 0; y < image_.height; ++y)
+      take_grey(pixels + y * state_.row_bytes, image_.width, samples_, samples_ == 2 ? 1 : 3, number_bytes_, y,
+                image_.values.data() + y * image_.width * number_bytes_, path_);
   }
 
-  static void undo_filter(std::vector<unsigned char>& row, const std::vector<unsigned char>& before,
-                          std::size_t pixel) {
-    for (std::size_t i = 1; i < row.size(); ++i) {
-      const int left = i > pixel ? row[i - pixel] : 0, up = before[i], corner = i > pixel ? before[i - pixel] : 0;
-      int guess = 0;
-      if (row[0] == 1) guess = left;
-      else if (row[0] == 2) guess = up;
-      else if (row[0] == 3) guess = (left + up) / 2;
-      else if (row[0] == 4) {
-        const int p = left + up - corner, a = std::abs(p - left), b = std::abs(p - up), c = std::abs(p - corner);
-        guess = a <= b && a <= c ? left : b <= c ? up : corner;
-      }
-      row[i] = static_cast<unsigned char>(row[i] + guess);
-    }
-  }
-
-  /// The row's pixels as numbers of one or two bytes.
-  void take_row(std::vector<unsigned char>& row, std::uint64_t columns, std::uint64_t y,
-                std::vector<unsigned char>& grey) {
-    unsigned char* p = row.data() + 1;
-    if (h_.bits < 8) {
-      for (std::uint64_t x = 0; x < columns; ++x) {
-        const std::uint64_t bit = x * static_cast<std::uint64_t>(h_.bits);
-        grey[x] =
-            static_cast<unsigned char>(p[bit / 8] >> (8 - h_.bits - static_cast<int>(bit % 8)) & ((1 << h_.bits) - 1));
-      }
-      return;
-    }
-    take_grey(p, columns, samples_, std::min(samples_ == 2 ? 1 : samples_, 3), bytes_, y, grey.data(), path_);
-    if (bytes_ == 2)
-      for (std::uint64_t x = 0; x < columns; ++x) {
-        const auto value = static_cast<std::uint16_t>(grey[2 * x] << 8 | grey[2 * x + 1]);
-        std::memcpy(grey.data() + 2 * x, &value, 2);
-      }
-  }
-
-  const Header h_;
+  const std::vector<unsigned char>& bytes_;
   const std::string& path_;
-  const int samples_;
-  const std::size_t bytes_;
+  PngState state_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
   SliceImage image_;
-  z_stream z_{};
-  int code_ = Z_OK;
+  int samples_ = 1;
+  std::size_t number_bytes_ = 1;
 };
 
 }  // namespace
@@ -183,32 +209,12 @@ void take_grey(const unsigned char* pixels, std::uint64_t count, int samples, in
 }
 
 SliceImage read_png(const std::vector<unsigned char>& bytes, const std::string& path) {
-  static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   if (bytes.size() > 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
     fail_input("this is a JPEG file, whose compression changes label numbers", path,
                "export the labels as PNG or TIFF");
-  if (bytes.size() < 8 || std::memcmp(bytes.data(), signature, 8) != 0)
+  if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0)
     fail_input("this is no PNG file, or it is damaged", path, "copy or export the file again");
-  std::vector<unsigned char> stream;
-  Header header;
-  for (std::size_t at = 8;;) {
-    if (bytes.size() - at < 12) damaged("truncated", path);
-    const std::size_t length = big_endian(&bytes[at]);
-    if (bytes.size() - at - 12 < length) damaged("truncated", path);
-    const unsigned char* type = &bytes[at + 4];
-    const auto is = [&](const char* name) { return std::memcmp(type, name, 4) == 0; };
-    if (::crc32(::crc32(0, nullptr, 0), type, static_cast<uInt>(length + 4)) != big_endian(type + 4 + length))
-      damaged("damaged (check sum)", path);
-    if (at == 8) {
-      if (length != 13 || !is("IHDR")) damaged("damaged (no header)", path);
-      header = read_header(type + 4, path);
-    } else if (is("IDAT")) {
-      stream.insert(stream.end(), type + 4, type + 4 + length);
-    }
-    at += 12 + length;
-    if (is("IEND")) break;
-  }
-  return PngDecoder(stream, header, path).run();
+  return PngReader(bytes, path).run();
 }
 
 }  // namespace stackmesh

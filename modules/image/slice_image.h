@@ -23,7 +23,7 @@ void take_grey(const unsigned char* pixels, std::uint64_t count, int samples, in
                std::uint64_t row, unsigned char* out, const std::string& where);
 
 /// Decodes a PNG file: grey as it is stored (1 to 16 bits, not stretched), colour where it is grey in truth. Every
-/// chunk, check sum and row must be there. @throws Error(input)
+/// row must be there, and the check sum of every chunk right. @throws Error(input)
 SliceImage read_png(const std::vector<unsigned char>& bytes, const std::string& path);
 
 /// Calls page(image, number from 1, is there more than one) for every page of a TIFF file; palettes and "white is zero"

@@ -129,7 +129,7 @@ void warn_of_missing(const std::vector<std::string>& files, std::vector<Warning>
   for (std::size_t i = 1; i < numbers.size(); ++i)
     if (numbers[i] > numbers[i - 1] && (step == 0 || numbers[i] - numbers[i - 1] < step))
       step = numbers[i] - numbers[i - 1];
-  std::string missing;
+  std::string missing, before;  // the numbers, and the file before the first of them
   long long count = 0;
   for (std::size_t i = 1; i < numbers.size(); ++i) {
     if (numbers[i] == numbers[i - 1])
@@ -138,11 +138,12 @@ void warn_of_missing(const std::vector<std::string>& files, std::vector<Warning>
                               " is there twice: " + file_name_of(files[i - 1]) + " and " + file_name_of(files[i])});
     for (long long n = numbers[i - 1] + step; step > 0 && n < numbers[i]; n += step) {
       if (++count > 10) break;
+      if (missing.empty()) before = file_name_of(files[i - 1]);
       missing += (missing.empty() ? "" : ", ") + std::to_string(n);
     }
   }
   if (count > 0)
-    warnings.push_back({WarningCode::missing_slices, "",
+    warnings.push_back({WarningCode::missing_slices, before,
                         std::string("missing slice number ") + missing + (count > 10 ? ", ..." : "") + " between " +
                             file_name_of(files.front()) + " and " + file_name_of(files.back()) +
                             ": the slices beside a hole are stacked as neighbours"});

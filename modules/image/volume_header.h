@@ -10,8 +10,8 @@
 
 namespace stackmesh {
 
-/// What the header of a volume file says. The reader needs no other library, so that nothing is mended or overlooked in
-/// silence.
+/// What the header of a volume file says. The readers are ours, so that nothing is mended or overlooked in silence; the
+/// fields of NIfTI are libnifti2's.
 struct VolumeHeader {
   std::array<int, 3> size = {1, 1, 1};
   std::array<double, 3> spacing_mm = {1, 1, 1};

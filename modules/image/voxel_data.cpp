@@ -258,13 +258,6 @@ void swap_bytes(unsigned char* p, std::uint64_t count, std::size_t size) {
   for (std::uint64_t i = 0; i < count; ++i, p += size) std::reverse(p, p + size);
 }
 
-bool is_big_endian_machine() {
-  const std::uint16_t one = 1;
-  unsigned char first = 0;
-  std::memcpy(&first, &one, 1);
-  return first == 0;
-}
-
 std::uint64_t share_of(const VoxelData& data) {
   if (data.parts.empty() || data.count % data.parts.size() != 0)
     fail_internal("voxels in unequal parts", "image module");
@@ -272,6 +265,13 @@ std::uint64_t share_of(const VoxelData& data) {
 }
 
 }  // namespace
+
+bool is_big_endian_machine() {
+  const std::uint16_t one = 1;
+  unsigned char first = 0;
+  std::memcpy(&first, &one, 1);
+  return first == 0;
+}
 
 std::size_t bytes_of(VoxelType type) {
   switch (type) {

@@ -12,6 +12,8 @@ namespace stackmesh {
 enum class VoxelType { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
 std::size_t bytes_of(VoxelType type);
 
+bool is_big_endian_machine();
+
 /// How the numbers are stored. `deflate` is a gzip or zlib stream; `raw_or_gzip` is gzip where the file begins as one.
 enum class VoxelEncoding { raw, raw_or_gzip, deflate, text, hex };
 

@@ -15,7 +15,11 @@ int sign(double x) {
 }
 
 int orient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a, v = c - a, w = d - a, n = cross(u, v);
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  // Differences of equal numbers are exactly 0: the four lie in a plane across an axis.
+  if ((u.x == 0 && v.x == 0 && w.x == 0) || (u.y == 0 && v.y == 0 && w.y == 0) || (u.z == 0 && v.z == 0 && w.z == 0))
+    return 0;
+  const Vec3 n = cross(u, v);
   const double det = dot(n, w);
   const double size = (std::abs(u.y * v.z) + std::abs(u.z * v.y)) * std::abs(w.x) +
                       (std::abs(u.z * v.x) + std::abs(u.x * v.z)) * std::abs(w.y) +

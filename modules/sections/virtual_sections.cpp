@@ -195,10 +195,10 @@ std::size_t add_virtual_sections(Stack& stack, std::optional<int> per_gap, int t
     between[gap].push_back(layer_section(layer, kTolerance_px));
   });
   for (const OpenGap& g : open) {
-    const std::string heights =
-        "z = " + text_of(stack.sections[g.gap].z_mm) + " and " + text_of(stack.sections[g.gap + 1].z_mm) + " mm";
-    warnings.push_back({WarningCode::open_wall, "sections at " + heights,
-                        "between the sections at " + heights +
+    const std::string sections = "sections at z = " + text_of(stack.sections[g.gap].z_mm) + " and " +
+                                 text_of(stack.sections[g.gap + 1].z_mm) + " mm";
+    warnings.push_back({WarningCode::open_wall, sections,
+                        "between the " + sections +
                             " contours that lie within others cannot be kept inside: a wall is open over about " +
                             text_of(g.area_mm2) + " mm2"});
   }

@@ -1,6 +1,6 @@
 // The parts of the module on their own.
 #include <gtest/gtest.h>
-#include <zlib.h>
+#include <png.h>
 
 #include <cmath>
 #include <random>
@@ -172,27 +172,15 @@ TEST(SlurmArrays, WordsAreSplitAsAShellDoes) {
   EXPECT_THROW(shell_words("--comment='open"), Error);
 }
 
-/// The pixels of a PNG as this module writes them.
 std::vector<std::uint8_t> pixels_of(const std::string& png, int& width, int& height) {
-  const auto number = [&](std::size_t at) {
-    std::uint32_t n = 0;
-    for (std::size_t i = 0; i < 4; ++i) n = n << 8 | static_cast<std::uint8_t>(png[at + i]);
-    return n;
-  };
-  width = static_cast<int>(number(16));
-  height = static_cast<int>(number(20));
-  const std::size_t at = png.find("IDAT") + 4, length = number(at - 8);
-  EXPECT_EQ(::crc32(0, reinterpret_cast<const Bytef*>(png.data() + at - 4), static_cast<uInt>(length + 4)),
-            number(at + length));
-  std::vector<std::uint8_t> rows(static_cast<std::size_t>(height) * (3 * width + 1));
-  uLongf size = rows.size();
-  EXPECT_EQ(::uncompress(rows.data(), &size, reinterpret_cast<const Bytef*>(png.data() + at), length), Z_OK);
-  EXPECT_EQ(size, rows.size());
-  std::vector<std::uint8_t> rgb;
-  for (int y = 0; y < height; ++y)
-    for (int i = 0; i < 3 * width; ++i)
-      rgb.push_back(static_cast<std::uint8_t>(rows[static_cast<std::size_t>(y) * (3 * width + 1) + 1 + i] +
-                                              (i < 3 ? 0 : rgb[rgb.size() - 3])));
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&image, png.data(), png.size()), 0) << image.message;
+  EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_RGB));
+  width = static_cast<int>(image.width);
+  height = static_cast<int>(image.height);
+  std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(image));
+  EXPECT_NE(png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr), 0) << image.message;
   return rgb;
 }
 

@@ -211,16 +211,19 @@ inline Bytes gipl(float sx = 1, float sy = 1, float sz = 1, std::uint32_t magic 
   return h + pack<std::uint8_t>(twelve);
 }
 
-/// A PNG whose pixel stream is given as it is: colour type 0 grey, 2 RGB, 3 palette, 6 RGBA.
-inline Bytes png_of_stream(int width, int height, int bits, int colour, const Bytes& stream) {
+/// A PNG whose pixel stream is given as it is: colour type 0 grey, 2 RGB, 3 palette, 4 grey with opacity, 6 RGBA.
+/// @param first so many bytes of the stream are in a chunk of their own, the rest in a second one
+inline Bytes png_of_stream(int width, int height, int bits, int colour, const Bytes& stream, bool interlaced = false,
+                           std::size_t first = Bytes::npos) {
   const auto chunk = [](const Bytes& type, const Bytes& data) {
     return big<std::uint32_t>(data.size()) + type + data + big(crc32(type + data));
   };
   const Bytes palette = colour == 3 ? chunk("PLTE", Bytes("\0\0\0\xff\0\0\0\xff\0", 9)) : "";
   return Bytes("\x89PNG\r\n\x1a\n") +
          chunk("IHDR", big<std::uint32_t>(width) + big<std::uint32_t>(height) + Bytes(1, static_cast<char>(bits)) +
-                           Bytes(1, static_cast<char>(colour)) + Bytes(3, '\0')) +
-         palette + chunk("iCCP", "bad profile") + chunk("IDAT", stream) + chunk("IEND", "");
+                           Bytes(1, static_cast<char>(colour)) + Bytes(2, '\0') + (interlaced ? '\1' : '\0')) +
+         palette + chunk("iCCP", "bad profile") + chunk("IDAT", stream.substr(0, first)) +
+         (first < stream.size() ? chunk("IDAT", stream.substr(first)) : "") + chunk("IEND", "");
 }
 /// `rows` holds the raw bytes of all rows.
 inline Bytes png(int width, int height, int bits, int colour, const Bytes& rows) {

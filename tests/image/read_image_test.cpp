@@ -84,6 +84,12 @@ TEST_F(ReadImage, DamagedNifti2IsOneClearError) {
     for (int d = 1; d < 4; ++d) huge.replace(16 + 8 * d, 8, little<std::int64_t>(size));
     expect_error([&] { read_image(write("huge.nii", huge)); }, {"huge.nii"});
   }
+  for (const std::int64_t dimensions : {std::int64_t{-1}, std::int64_t{8}, std::int64_t{1} << 40}) {
+    Bytes many = good;
+    many.replace(16, 8, little<std::int64_t>(dimensions));
+    expect_error([&] { read_image(write("many.nii", many)); },
+                 {"many.nii", "it has " + std::to_string(dimensions) + " dimensions"});
+  }
 }
 
 TEST_F(ReadImage, SampleIsConstantInTheOuterHalfVoxelAndNoneBeyond) {

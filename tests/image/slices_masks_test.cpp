@@ -1,4 +1,5 @@
 // Folders: stacks of PNG/TIFF slices, and one mask per structure.
+#include <algorithm>
 #include <cmath>
 
 #include "image_files.h"
@@ -7,6 +8,8 @@ using namespace image_files;
 using stackmesh::LabelVolume;
 using stackmesh::read_label_volume;
 using stackmesh::ReadOptions;
+using stackmesh::Warning;
+using stackmesh::WarningCode;
 
 namespace {
 
@@ -62,7 +65,12 @@ TEST_F(Slices, PagesOfATiffAreSlices) {
 
 TEST_F(Slices, MissingNumberIsNamed) {
   for (int n : {1, 2, 5, 6}) write("s/slice_" + std::to_string(n) + ".png", filled(1));
-  EXPECT_TRUE(has_warning(read_label_volume(at("s")).warnings, "missing slice number 3, 4"));
+  const std::vector<Warning> warnings = read_label_volume(at("s")).warnings;
+  EXPECT_TRUE(has_warning(warnings, "missing slice number 3, 4"));
+  const auto hole = std::find_if(warnings.begin(), warnings.end(),
+                                 [](const Warning& w) { return w.code == WarningCode::missing_slices; });
+  ASSERT_NE(hole, warnings.end());
+  EXPECT_EQ(hole->where, "slice_2.png");  // the last one before the hole
   for (int n : {10, 20, 40}) write("t/" + std::to_string(n) + ".png", filled(1));
   EXPECT_TRUE(has_warning(read_label_volume(at("t")).warnings, "missing slice number 30"));
   for (int n : {10, 20, 30}) write("u/" + std::to_string(n) + ".png", filled(1));

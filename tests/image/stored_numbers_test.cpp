@@ -231,6 +231,64 @@ TEST_F(StoredNumbers, PngFiltersAreUndone) {
   EXPECT_EQ(numbers_of(v), (std::vector<int>{1, 2, 3, 1, 2, 3, 2, 3, 4, 2, 3, 4, 3, 4, 5}));
 }
 
+TEST_F(StoredNumbers, InterlacedPngIsPutTogether) {
+  // The passes of 5 x 3 pixels, by the table of the PNG specification: each holds the pixels of its own columns and
+  // rows, and every row of a pass begins with its filter.
+  const int columns[7][2] = {{0, 8}, {4, 8}, {0, 4}, {2, 4}, {0, 2}, {1, 2}, {0, 1}},
+            rows[7][2] = {{0, 8}, {0, 8}, {4, 8}, {0, 4}, {2, 4}, {0, 2}, {1, 2}};
+  std::vector<int> labels;
+  for (int i = 0; i < 15; ++i) labels.push_back(1 + 17 * i % 250);
+  for (int bits : {8, 16}) {
+    SCOPED_TRACE(bits);
+    Bytes stream;
+    for (int pass = 0; pass < 7; ++pass)
+      for (int y = rows[pass][0]; y < 3 && columns[pass][0] < 5; y += rows[pass][1]) {
+        stream += '\0';
+        for (int x = columns[pass][0]; x < 5; x += columns[pass][1])
+          stream += bits == 8 ? Bytes(1, static_cast<char>(labels[5 * y + x]))
+                              : big<std::uint16_t>(static_cast<std::uint16_t>(labels[5 * y + x]));
+      }
+    EXPECT_EQ(numbers_of(read_label_volume(write("a.png", png_of_stream(5, 3, bits, 0, zlib(stream), true)))), labels);
+    const Bytes shorter = stream.substr(0, stream.size() - 1);
+    expect_unreadable(write("a.png", png_of_stream(5, 3, bits, 0, zlib(shorter), true)), {"too few pixels"});
+  }
+}
+
+TEST_F(StoredNumbers, OpacityOfAPngDoesNotCount) {
+  EXPECT_EQ(numbers_of(read_label_volume(write("a.png", png(2, 1, 8, 4, Bytes("\3\0\4\xff", 4))))),
+            (std::vector<int>{3, 4}));
+  EXPECT_EQ(numbers_of(read_label_volume(write("b.png", png(1, 1, 16, 6, Bytes("\1\2\1\2\1\2\0\0", 8))))),
+            (std::vector<int>{258}));
+}
+
+TEST_F(StoredNumbers, DamageOfAPngIsToldApart) {
+  const Bytes rows("\0\1\2\0\3\4", 6), stream = zlib(rows), whole = png_of_stream(2, 2, 8, 0, stream);
+  EXPECT_EQ(numbers_of(read_label_volume(write("a.png", whole))), (std::vector<int>{1, 2, 3, 4}));
+  for (std::size_t length : {std::size_t{9}, std::size_t{30}, whole.size() - 20, whole.size() - 1})
+    expect_unreadable(write("a.png", whole.substr(0, length)), {"truncated"});
+  for (std::size_t at : {std::size_t{20}, std::size_t{42}, whole.size() - 18}) {
+    Bytes damaged = whole;
+    damaged[at] ^= 1;
+    expect_unreadable(write("a.png", damaged), {"damaged (check sum)"});
+  }
+  Bytes checked = stream;  // by its own check sum, in its last four bytes
+  checked.back() ^= 1;
+  for (std::size_t first : {std::size_t{3}, checked.size() - 4, checked.size()})
+    expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, checked, false, first)), {"damaged (pixels)"});
+  expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, zlib(Bytes("\0\1\2\5\3\4", 6)))), {"damaged (pixels)"});
+  expect_unreadable(write("a.png", png_of_stream(2, 2, 8, 0, zlib(rows.substr(0, 5)))), {"too few pixels"});
+  expect_unreadable(write("a.png", png_of_stream(999999, 999999, 8, 0, stream)), {"too few pixels"});
+  expect_unreadable(write("a.png", png_of_stream(1000001, 2, 8, 0, stream)), {"size in its header"});
+  expect_unreadable(write("a.png", png_of_stream(2, 2, 3, 0, stream)), {"damaged (header)"});
+  // Neither chunks of any length nor what follows the pixels is damage.
+  for (std::size_t first = 0; first < stream.size(); ++first)
+    EXPECT_EQ(numbers_of(read_label_volume(write("a.png", png_of_stream(2, 2, 8, 0, stream, false, first)))),
+              (std::vector<int>{1, 2, 3, 4}));
+  for (const Bytes& more : {zlib(rows + Bytes(9, '\7')), stream + "more"})
+    EXPECT_EQ(numbers_of(read_label_volume(write("a.png", png_of_stream(2, 2, 8, 0, more)))),
+              (std::vector<int>{1, 2, 3, 4}));
+}
+
 /// A TIFF page whose tags 258 (bits), 262 (photometric), 339 (format) are as given; tag 320 (palette) where photometric
 /// is 3.
 Bytes tiff_page(int width, int height, int bits, int photometric, int format, const Bytes& data) {

@@ -3,10 +3,12 @@
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/oflog/oflog.h>
+#include <nifti2_io.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "../image/image_files.h"
@@ -49,6 +51,34 @@ TEST_F(Dependencies, DcmtkReadsSequencesByRecursion) {
             }),
             SIGSEGV)
       << "DCMTK reads deep sequences now: image/dicom_nesting.cpp may go";
+}
+
+TEST_F(Dependencies, Libnifti2ConvertsAnyNumberOfDimensions) {
+  nifti_2_header header;
+  std::memset(&header, 0, sizeof header);
+  header.sizeof_hdr = sizeof header;
+  std::memcpy(header.magic, "n+2\0\r\n\032\n", 8);
+  header.datatype = NIFTI_TYPE_UINT8;
+  for (auto& size : header.dim) size = 1;
+  EXPECT_EQ(ended_by([&] { nifti_convert_n2hdr2nim(header, nullptr); }), 0);
+  header.dim[0] = std::int64_t{1} << 40;
+  EXPECT_EQ(ended_by([&] { nifti_convert_n2hdr2nim(header, nullptr); }), SIGSEGV)
+      << "libnifti2 looks at the number of dimensions now";
+}
+
+TEST_F(Dependencies, Libnifti2MendsDamagedHeaders) {
+  nifti_1_header header;
+  std::memset(&header, 0, sizeof header);
+  header.sizeof_hdr = sizeof header;
+  std::memcpy(header.magic, "n+1", 4);
+  header.datatype = NIFTI_TYPE_UINT8;
+  const short sizes[] = {3, 4, -7, 0};
+  std::copy(sizes, sizes + 4, header.dim);
+  nifti_image* const image = nifti_convert_n1hdr2nim(header, nullptr);
+  ASSERT_NE(image, nullptr) << "libnifti2 refuses damaged sizes now";
+  EXPECT_EQ(image->ny, 1);
+  EXPECT_EQ(image->dx, 1);  // the voxel size, which is 0
+  nifti_image_free(image);
 }
 
 TEST_F(Dependencies, JsonIsCopiedByRecursion) {

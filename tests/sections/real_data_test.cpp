@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "image/read_labels.h"
+#include "sections/volume_sections.h"
 #include "volumes.h"
 
 namespace stackmesh {
@@ -24,6 +25,17 @@ LabelVolume every_nth(const LabelVolume& fine, int n, int& first) {
   }
   thick.spacing_mm[2] *= n;
   return thick;
+}
+
+TEST(VolumeSections, GapsThatKeepCloserToTheSlicesAreAWarningWithTheirPlace) {
+  Monitor quiet;
+  const VolumeSections made =
+      volume_sections(read_label_volume(STACKMESH_TESTDATA "/heart4.nii.gz"), SectionOptions{}, quiet);
+  ASSERT_EQ(made.warnings.size(), 1u);
+  EXPECT_EQ(made.warnings[0].code, WarningCode::held_to_slices);
+  EXPECT_EQ(made.warnings[0].where, "slices 11 and 12");
+  EXPECT_EQ(made.warnings[0].text.find("between slices 11 and 12 smooth sections would join or split"), 0u)
+      << made.warnings[0].text;
 }
 
 TEST(VirtualSlicesOnRealData, HeartOfEveryFifthSliceIsRecovered) {

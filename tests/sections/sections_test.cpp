@@ -153,6 +153,25 @@ TEST(VirtualSections, AutomaticNumberFollowsEachGap) {
   EXPECT_EQ(between, (std::vector<int>{0, 5, 2, 0}));
 }
 
+TEST(VirtualSections, AWallThatCannotBeKeptIsAWarningWithItsSections) {
+  // A disc jumps aside by more than its width; the one within it lies at its left end, then at its right one.
+  const auto discs = [](double jump, double inner) {
+    return stack_of({file_of(1, {0, 5, 15}, [&](double z) { return circle(z > 5 ? jump : 0, 0, 10); }),
+                     file_of(2, {0, 5, 15}, [&](double z) { return circle(z > 5 ? jump + inner : -inner, 0, 2); })});
+  };
+  Stack stack = discs(60, 7), still = discs(0, 3);
+  std::vector<Warning> open, none;
+  add_virtual_sections(stack, std::nullopt, 1, open);
+  add_virtual_sections(still, std::nullopt, 1, none);
+  ASSERT_EQ(open.size(), 1u);
+  EXPECT_EQ(open[0].code, WarningCode::open_wall);
+  EXPECT_EQ(open[0].where, "sections at z = 5 and 15 mm");
+  EXPECT_NE(open[0].text.find("between the sections at z = 5 and 15 mm contours that lie within others"),
+            std::string::npos)
+      << open[0].text;
+  EXPECT_TRUE(none.empty());
+}
+
 TEST(VirtualSections, ZeroAddsNoneAndNonsenseIsRefused) {
   Stack stack = stack_of({file_of(1, {0, 6}, [](double) { return circle(20, 20, 10); })});
   EXPECT_EQ(add_virtual_sections(stack, 0, 1, unheard), 0u);
