@@ -29,4 +29,15 @@ double estimate_tets(const InterfaceComplex& complex, const FillOptions& options
   return tets;
 }
 
+double thickness_in_edges(const InterfaceComplex& complex) {
+  double edges = 0, enclosed = 0;
+  for (const InterfaceTriangle& t : complex.triangles) {
+    const Vec3 &a = complex.points[t.v[0]], &b = complex.points[t.v[1]], &c = complex.points[t.v[2]];
+    const double own = 0.5 * ((t.below != 0) + (t.above != 0)) * norm(cross(b - a, c - a));
+    edges += own * (norm(b - a) + norm(c - b) + norm(a - c)) / 3;
+  }
+  for (const auto& [label, v] : volume::surface_volumes(complex)) enclosed += std::abs(v.mm3);
+  return edges > 0 ? 2 * enclosed / edges : 0;
+}
+
 }  // namespace stackmesh

@@ -116,7 +116,14 @@ class Filler {
       refinement_pays = result.status != Status::timed_out;
       before = result.message;
     }
-    Call call{false, "", scale};
+    const Call call{false, "", scale};
+    if (!wants_refinement && options_.improve_deg) {  // the improvement takes the time: in halves, as above
+      if (const std::vector<Group> own = groups(); !own.empty()) {
+        FillResult result = attempt(call, deadline_, own);
+        if (result.status == Status::verified || killed_) return result;
+        retry_is_useless_ = false;
+      }
+    }
     FillResult result = attempt(call, deadline_);
     if (result.status == Status::verified) return with_note(std::move(result), before);
     if (retry_is_useless_ || result.status == Status::timed_out) return result;
