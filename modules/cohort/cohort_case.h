@@ -13,8 +13,8 @@ struct OptionValue {
 
 /// What may stand in a manifest's column.
 struct KnownOption {
-  std::string name;
-  bool is_flag = false;
+  std::string name;            ///< long name without dashes: "edge-length"
+  bool is_flag = false;        ///< takes no value; a cell holds yes or no
   bool takes_several = false;  ///< a cell holds them separated by semicolons
   bool is_path = false;        ///< names a file, relative to the manifest's folder
 };

@@ -8,13 +8,15 @@ namespace stackmesh {
 
 /// What a short look at a case's input tells before it is meshed.
 struct CaseLook {
-  std::string key;  ///< see key_of_case; empty where the input has no file that can be read
-  std::string input_sha256;
-  std::string fault;  ///< why the input cannot be read, one line; empty where it can, or where it was not tried
-  std::size_t voxels = 0, labels = 0;
-  double volume_mm3 = 0;  ///< of all labels
+  std::string key;           ///< see key_of_case; empty where the input has no file that can be read
+  std::string input_sha256;  ///< over the bytes of the input's files, in hexadecimal
+  std::string fault;         ///< why the input cannot be read, one line; empty where it can, or where it was not tried
+  std::size_t voxels = 0;    ///< of the whole grid, background included; 0 for contours and where it was not read
+  std::size_t labels = 0;    ///< that are requested, without the background
+  double volume_mm3 = 0;     ///< of all labels
   /// of the voxel faces between different labels, border included, over 1.5: about the surface
   double area_mm2 = 0;
+  /// root of a pixel's area across the coarsest axis; of contours Stack::pixel_mm, or the gap; 0: was not read
   double pixel_mm = 0;
   double memory_mb = 0;  ///< foretold: largest resident set
   double time_s = 0;     ///< foretold: on one free core
@@ -30,6 +32,8 @@ CaseLook identify_case(const CohortCase& c, const CaseCommand& command);
 
 /// Reads the input once: key, sizes, and from them memory and time, by figures measured with this version
 /// (docs/cohorts.md).
+/// @param c the case; its own options are among those of all
+/// @param command whose name, version and formats go into the key
 /// @param known_key of a result that is there: where it is the case's key, the voxels are not read
 CaseLook look_at_case(const CohortCase& c, const CaseCommand& command, const std::string& known_key);
 

@@ -20,9 +20,12 @@ std::vector<CohortCase> read_bids_tree(const std::string& folder, const CaseComm
                                        const std::vector<OptionValue>& of_all);
 
 /// What a glob names, in order of name; the id is the file's name without its ending, or, where two would be the same,
-/// the path with
-/// '_' for '/'. @param folder to which the glob is relative; empty: the working folder. @throws Error(input) where it
-/// names nothing
+/// the path with '_' for '/'.
+/// @param pattern with the wildcards * ? [] of the shell: "scans/*.nii.gz"
+/// @param folder to which the glob is relative; empty: the working folder
+/// @param command that will make the cases; its check() sees the words of each
+/// @param of_all options that every case gets
+/// @throws Error(input) where it names nothing
 std::vector<CohortCase> read_glob(const std::string& pattern, const std::string& folder, const CaseCommand& command,
                                   const std::vector<OptionValue>& of_all);
 

@@ -10,11 +10,13 @@ enum class Side { both, low, high };
 
 /// A figure that is compared over a cohort.
 struct Metric {
-  std::string id, title, unit;
+  std::string id;            ///< its name in cohort.csv and cohort.json: "volume_mm3"
+  std::string title;         ///< its name on the page: "Volume"
+  std::string unit;          ///< as it is printed behind a value: "mm3"; "": none
   bool per_label = false;    ///< one value for each label, else one for the case
   bool logarithmic = false;  ///< ratios count, not differences
-  Side side = Side::both;
-  double least_spread = 0;  ///< smallest spread that is believed: in the figure's unit, or the logarithm's
+  Side side = Side::both;    ///< on which side of the median values get a score
+  double least_spread = 0;   ///< smallest spread that is believed: in the figure's unit, or the logarithm's
 };
 
 /// Every figure, in the order in which tables and charts show them.
@@ -25,10 +27,14 @@ struct Distribution {
   std::size_t metric = 0;          ///< in cohort_metrics()
   int label = 0;                   ///< 0: of the case
   std::vector<std::size_t> cases;  ///< beside `values`
-  std::vector<double> values;
-  std::vector<double> scores;  ///< robust z, of the remarkable side only; 0 where there are too few values
-  /// low, high: furthest values within 1.5 interquartile ranges of the box (of logarithms where these count)
-  double low = 0, q1 = 0, median = 0, q3 = 0, high = 0;
+  std::vector<double> values;      ///< finite, in the metric's unit, in the order of `cases`
+  std::vector<double> scores;      ///< robust z, of the remarkable side only; 0 where there are too few values
+  /// smallest value within 1.5 interquartile ranges below the box (of logarithms where these count)
+  double low = 0;
+  double q1 = 0;      ///< lower end of the box: a quarter of the values lie below
+  double median = 0;  ///< between the two middle values where their number is even
+  double q3 = 0;      ///< upper end of the box: a quarter of the values lie above
+  double high = 0;    ///< largest value within the same reach above the box
 };
 
 /// A score above it marks an outlier (Iglewicz and Hoaglin 1993).

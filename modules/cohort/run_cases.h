@@ -10,6 +10,7 @@
 
 namespace stackmesh {
 
+/// How the cases of a cohort are run on this machine.
 struct RunCasesOptions {
   std::string program;                  ///< path of the program that makes a case
   int jobs = 0;                         ///< cases at once; 0: as many as this process may use cores
@@ -25,22 +26,30 @@ struct RunCasesOptions {
 
 /// What happened to a case.
 struct CaseEvent {
+  /// How far the case has come; all but `started` end it.
   enum class Kind {
-    started,
-    done,
-    failed,
+    started,        ///< its process has begun, for the first time or again
+    done,           ///< its result stands in the folder
+    failed,         ///< no try is left; the record says why
     unchanged,      ///< done before, with the same key
     failed_before,  ///< with the same key; not run again
     adopted         ///< a former run had done all but the last rename
   };
-  Kind kind = Kind::started;
-  CaseRecord record;
-  std::size_t ended = 0, of = 0;  ///< cases that have ended, this one included
+  Kind kind = Kind::started;  ///< which of them this event tells
+  CaseRecord record;          ///< as it is in the folder; of `started` the id alone
+  std::size_t ended = 0;      ///< cases that have ended so far, this one included where it has
+  std::size_t of = 0;         ///< cases of the run in all
 };
 
+/// How the cases of a run came out, in numbers of cases.
 struct RunCasesResult {
-  std::size_t done = 0, failed = 0, unchanged = 0, failed_before = 0, adopted = 0, not_run = 0;
-  int stopped_by = 0;  ///< the signal that asked to stop; what ran then is not run, and leaves nothing
+  std::size_t done = 0;           ///< ran to their end in this run
+  std::size_t failed = 0;         ///< ran in this run without a result
+  std::size_t unchanged = 0;      ///< were done before with the same key
+  std::size_t failed_before = 0;  ///< failed before with the same key and were not run again
+  std::size_t adopted = 0;        ///< a former run had done all but the last rename
+  std::size_t not_run = 0;        ///< were waiting or running when a signal stopped the run
+  int stopped_by = 0;             ///< the signal that asked to stop; what ran then is not run, and leaves nothing
 };
 
 /// Makes each case by a process of the program itself, in the order given, as many at once as `jobs` and memory allow:

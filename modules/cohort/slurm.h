@@ -10,24 +10,26 @@
 
 namespace stackmesh {
 
+/// How the cases of a cohort are given to Slurm.
 struct SlurmOptions {
   std::string program;  ///< path of the program, the same on every node
   /// for sbatch, as one text: "--partition=long --account=x"; they go before what is foretold
   std::string arguments;
-  int cases_per_task = 1;
-  int retries = 0;
-  bool failed_again = false;
+  int cases_per_task = 1;               ///< that one task makes, one after the other; below 1 counts as 1
+  int retries = 0;                      ///< more tries of a case that fails, see RunCasesOptions::retries
+  bool failed_again = false;            ///< cases that failed before with the same key run again
   std::optional<double> timeout_s;      ///< of each case; then it decides on --time
   std::uint64_t case_memory_bytes = 0;  ///< of each case; then it decides on --mem
 };
 
 /// Cases that need about the same memory and time, as one array job.
 struct SlurmArray {
-  std::string name;    ///< of its files in .cohort/slurm
-  std::string job_id;  ///< empty until it is submitted
-  std::uint64_t memory_mb = 0;
-  int minutes = 0;
-  int tasks = 0, cases_per_task = 1;
+  std::string name;              ///< of its files in .cohort/slurm
+  std::string job_id;            ///< empty until it is submitted
+  std::uint64_t memory_mb = 0;   ///< of each task, MB: its --mem, and the bound of each case
+  int minutes = 0;               ///< of each task: its --time
+  int tasks = 0;                 ///< numbered from 0 in Slurm
+  int cases_per_task = 1;        ///< the last task may have fewer
   std::vector<std::string> ids;  ///< in the order of the tasks
 };
 

@@ -7,12 +7,13 @@ namespace stackmesh {
 
 /// A table of text as it stands in a CSV or TSV file.
 struct Table {
+  /// A line of the file, or several where a quoted cell holds line ends.
   struct Row {
     std::size_t line = 0;            ///< where it begins in the file, from 1
     std::vector<std::string> cells;  ///< as many as there are columns
   };
-  std::vector<std::string> columns;
-  std::vector<Row> rows;
+  std::vector<std::string> columns;  ///< cells of the head line, one a column; names are not checked
+  std::vector<Row> rows;             ///< below the head line, in the file's order, without empty ones
 };
 
 /// Reads a table with a head line: tabs separate the cells when the name ends in .tsv or the head line holds a tab,

@@ -43,7 +43,9 @@ void check_plan(const MaterialPlan& plan, const std::vector<LabelInfo>& labels, 
 /// Gives every element its material: constant by label, or from the image's intensities by a law. Only voxels inside
 /// the label (less a margin) speak for it. The modulus of each element is kept, and binned for decks that need a
 /// material for each. Skins get theirs. Without a plan, every label gets a placeholder.
-/// @param plan nullptr: none; @param image nullptr: none; it lies in LPS, whatever the space of the mesh
+/// @param model with sets and parts; gets its materials, and the modulus of each element where a law gives it
+/// @param plan nullptr: none
+/// @param image nullptr: none; it lies in LPS, whatever the space of the mesh
 /// @throws Error(input): a label or skin without material, a law that names a label that is not there, an image that
 /// does not cover an element of a label with a law, an element whose modulus is not positive (it is named);
 /// Error(usage): a law without an image

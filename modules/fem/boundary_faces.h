@@ -9,13 +9,15 @@ namespace stackmesh {
 
 /// A face of a tet that has another label, or nothing, on its other side.
 struct BoundaryFace {
-  TetFace at;
-  Label in = 0, out = 0;            ///< of its tet, and on the other side
+  TetFace at;                       ///< the element and which of its faces
+  Label in = 0;                     ///< of its tet
+  Label out = 0;                    ///< on the other side; 0: nothing is meshed there
   Label behind = 0;                 ///< where that is nothing: the void there, 0 for the background
   std::array<std::int32_t, 3> v{};  ///< corners, seen from outside anticlockwise
   std::int32_t twin = -1;           ///< the same face seen from the other side; -1: background
-  Vec3 normal, centre;              ///< unit, out of its tet; of the plane triangle
-  double area_mm2 = 0;
+  Vec3 normal;                      ///< unit, out of its tet, in the space of the mesh; zero for an area of 0
+  Vec3 centre;                      ///< mean of the corners, mm, in the space of the mesh
+  double area_mm2 = 0;              ///< of the plane triangle
 };
 
 /// All faces between labels and to the background, by ascending tet; an interface has two, one a side.

@@ -8,11 +8,11 @@ namespace stackmesh {
 
 /// A body of a model: tets that share faces.
 struct Body {
-  Label label = 0;   ///< of the largest part of it
-  std::string name;  ///< of that label
-  std::size_t tets = 0;
-  double volume_mm3 = 0;
-  Vec3 centre;
+  Label label = 0;        ///< of the largest part of it
+  std::string name;       ///< of that label
+  std::size_t tets = 0;   ///< its elements, wedges and pyramids included
+  double volume_mm3 = 0;  ///< of its elements, taken as straight-sided
+  Vec3 centre;            ///< of its volume, mm, in the space of the mesh
 };
 
 /// The bodies of a model, the largest first. Parts have nodes of their own, so each has bodies of its own.

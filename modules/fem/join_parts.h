@@ -4,10 +4,11 @@
 
 namespace stackmesh {
 
+/// What parts that touch do to each other.
 struct JoinOptions {
-  Contact others = Contact::tie;  ///< for pairs of parts that no law names
-  const std::vector<ContactLaw>* laws = nullptr;
-  std::string path;  ///< of the law file, for an error
+  Contact others = Contact::tie;                  ///< for pairs of parts that no law names
+  const std::vector<ContactLaw>* laws = nullptr;  ///< for pairs that they name, before `others`; nullptr: none
+  std::string path;                               ///< of the law file, for an error
 };
 
 /// Says for each pair of parts that touch what they do to each other, and ties the nodes of those that are tied: at

@@ -12,12 +12,13 @@ namespace stackmesh {
 
 /// Where the labels came from, for sets that only an image can name.
 struct ImageBox {
-  Vec3 origin;                        ///< world position (mm) of the corner of the first voxel
-  std::array<Vec3, 3> axes;           ///< unit vectors of the image's x, y, z in the world
-  std::array<double, 3> length_mm{};  ///< of the whole image along them
-  std::array<double, 3> spacing_mm{};
+  Vec3 origin;                         ///< world position (mm) of the corner of the first voxel
+  std::array<Vec3, 3> axes;            ///< unit vectors of the image's x, y, z in the world
+  std::array<double, 3> length_mm{};   ///< of the whole image along them
+  std::array<double, 3> spacing_mm{};  ///< of its voxels along them
 };
 
+/// Which sets and parts a mesh gets.
 struct SetOptions {
   Vec3 up = {0, 0, 1};            ///< stacking axis in the world, from the first slice to the last
   std::optional<ImageBox> image;  ///< names the faces on the image's own sides
@@ -42,6 +43,8 @@ struct SetOptions {
 ///
 /// @param mesh linear or second order, every tet positive; any order of tets, but those cut from one stand together as
 /// refine_tets() leaves them
+/// @param labels numbers and names, as solvers have them, voids among them
+/// @param options lengths in mm, in the space of the mesh
 /// @throws Error(usage) for a selection that cannot be read or a part given twice, Error(input) for a label that is not
 /// there, a selection without faces, a mesh whose tets overlap
 SolverModel name_sets(const TetMesh& mesh, const std::vector<LabelInfo>& labels, const SetOptions& options);

@@ -8,7 +8,7 @@ namespace stackmesh {
 
 /// What a solution says on the faces of a set.
 struct SetStress {
-  std::string set;
+  std::string set;                 ///< name of the face set, as in the solver model
   double mises_rms_mpa = 0;        ///< root of the mean square over its area
   double mises_max_mpa = 0;        ///< at corners
   double displacement_max_mm = 0;  ///< of its nodes
@@ -17,6 +17,8 @@ struct SetStress {
   double zz_rel = 0;
   bool held = false;  ///< all of its nodes are held or moved by the first static step
 };
+
+/// What a solution says of a model as a whole and of its sets.
 struct StressMeasure {
   std::vector<SetStress> sets;  ///< those with faces, in the model's order
   double zz_rel = 0;            ///< of all elements

@@ -9,9 +9,9 @@ namespace stackmesh {
 
 /// What a selection may refer to.
 struct SelectionContext {
-  const TetMesh& mesh;
-  const std::vector<BoundaryFace>& faces;
-  const std::vector<LabelInfo>& labels;                                     ///< numbers and names
+  const TetMesh& mesh;                     ///< in whose space and mm the coordinates are
+  const std::vector<BoundaryFace>& faces;  ///< of that mesh, as boundary_faces() gives them; results are places in it
+  const std::vector<LabelInfo>& labels;    ///< numbers and names
   std::function<const std::vector<std::int32_t>*(const std::string&)> set;  ///< faces of a named set; none: nullptr
   std::function<std::vector<std::string>()> set_names;                      ///< of all sets, for an error
   std::function<std::string(std::int32_t)> place_of;                        ///< names where a face lies, for an error
@@ -30,6 +30,7 @@ std::pair<std::string, std::vector<std::int32_t>> select_faces(const std::string
                                                                const SelectionContext& context);
 
 /// Reads a selection as select_faces() does, before there are faces; the sets that it names are not looked for.
+/// @param text as for select_faces(): NAME=CRITERION[&CRITERION...]
 /// @param labels numbers and names, as solvers have them
 void check_selection(const std::string& text, const std::vector<LabelInfo>& labels);
 

@@ -8,6 +8,7 @@ namespace stackmesh {
 
 /// Gives each part its own copy of every node that several parts share; within a part nodes stay shared. The part with
 /// the smallest number keeps the original.
+/// @param mesh gets the copies behind its points, mid-side nodes too; its elements then name them
 /// @param part_of one number from 0 per tet
 /// @return for each node of the new mesh the node that it was
 std::vector<std::int32_t> split_parts(TetMesh& mesh, const std::vector<int>& part_of);
