@@ -9,9 +9,13 @@ namespace stackmesh {
 
 /// What a folder (or one file) of DICOM holds; empty where it holds none.
 struct DicomContent {
-  std::vector<std::string> structure_sets, segmentations, images, others;
+  std::vector<std::string> structure_sets;  ///< paths of files of contours (RTSTRUCT)
+  std::vector<std::string> segmentations;   ///< paths of files of label masks (SEG)
+  std::vector<std::string> images;          ///< paths of files of slices, of all series together
+  std::vector<std::string> others;          ///< paths of DICOM files of any other kind, which cannot be read as labels
+  /// Number of DICOM files of all kinds.
   std::size_t size() const { return structure_sets.size() + segmentations.size() + images.size() + others.size(); }
-  bool any() const { return size() > 0; }
+  bool any() const { return size() > 0; }  ///< whether there is any DICOM file
 };
 
 /// Looks into a folder's files, or at one file. Folders are not searched deeper.

@@ -11,7 +11,7 @@ namespace stackmesh {
 struct StructureSet {
   std::vector<LabelContours> structures;  ///< those requested, in the order asked (else the file's), each with contours
   Frame frame;                            ///< plane coordinates and height to LPS
-  std::vector<Warning> warnings;
+  std::vector<Warning> warnings;          ///< what was left out, closed, renumbered or otherwise mended
 };
 
 /// Reads the closed planar contours of the structures that `labels` names ("Heart,Lt_Lung"; empty: all) (open ones are

@@ -12,7 +12,7 @@ namespace stackmesh {
 /// Results of CalculiX at its nodes.
 struct FrdResult {
   std::vector<std::int64_t> numbers;  ///< of the nodes, as in the deck
-  std::vector<Vec3> points;
+  std::vector<Vec3> points;           ///< of the nodes before the load, beside `numbers`, in the deck's unit (mm)
   /// Fields of the last step, rows as the nodes' (0 where a node has none): "DISP" 3 components, "STRESS" 6 (xx, yy,
   /// zz, xy, yz, zx).
   std::map<std::string, std::vector<std::array<double, 6>>> fields;

@@ -23,29 +23,31 @@ enum class LabelSource {
 /// A mesh of any program, as its file holds it: mm are not checked, points keep their order (but see
 /// `merged_points`), cells of other kinds than triangles, tets, wedges and pyramids are gone.
 struct MeshFile {
-  std::string path, format;  ///< format: "stl", "ply", "obj", "off", "vtp", "vtk", "vtu", "msh", "inp" or "mesh"
-  std::vector<Vec3> points;
+  std::string path;          ///< of the file, as it was given
+  std::string format;        ///< "stl", "ply", "obj", "off", "vtp", "vtk", "vtu", "msh", "inp" or "mesh"
+  std::vector<Vec3> points;  ///< in the file's own coordinates, taken for mm
   /// Surface triangles. Of a file without tets: the normal points from `below` into `above`. Of a file with
   /// tets: only those that carry both labels; all others are left out, as the tets' faces tell more.
   std::vector<InterfaceTriangle> triangles;
   /// of a file with tets, per triangle: a label that it names and no tet has (a void), taken for background; 0: none
   std::vector<Label> behind;
-  std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<std::array<std::int32_t, 4>> tets;     ///< corners, indices of `points`
   std::vector<std::array<std::int32_t, 6>> midside;  ///< of 10-node tets, on kTetEdges; empty: linear
   std::vector<std::array<std::int32_t, 6>> wedges;   ///< and pyramids, as TetMesh has them
   /// of 15-node wedges and 13-node pyramids, on kWedgeEdges; empty: linear
   std::vector<std::array<std::int32_t, 9>> wedge_midside;
-  std::vector<Label> tet_labels;  ///< one per element: tets, then wedges
-  std::vector<LabelInfo> names;   ///< of labels the file names, ascending by number
-  LabelSource label_source = LabelSource::none;
-  std::string label_array;            ///< name of the array the labels were read from, "" for none
-  bool numbers_from_names = false;    ///< of sets: some number was only counted up; the name is what counts
-  std::optional<Space> space;         ///< the frame that the file says it is in
-  std::size_t merged_points = 0;      ///< exactly equal points that were made one (surfaces only)
-  std::size_t dropped_triangles = 0;  ///< triangles that name a point twice (they bound nothing)
-  std::vector<std::string> notes;     ///< what was converted or left out, for a report
+  std::vector<Label> tet_labels;                 ///< one per element: tets, then wedges
+  std::vector<LabelInfo> names;                  ///< of labels the file names, ascending by number
+  LabelSource label_source = LabelSource::none;  ///< what in the file the labels were taken from
+  std::string label_array;                       ///< name of the array the labels were read from, "" for none
+  bool numbers_from_names = false;               ///< of sets: some number was only counted up; the name is what counts
+  std::optional<Space> space;                    ///< the frame that the file says it is in
+  std::size_t merged_points = 0;                 ///< exactly equal points that were made one (surfaces only)
+  std::size_t dropped_triangles = 0;             ///< triangles that name a point twice (they bound nothing)
+  std::vector<std::string> notes;                ///< what was converted or left out, for a report
 };
 
+/// How a mesh file is read.
 struct MeshReadOptions {
   /// Cell array that holds the labels; empty: the first of label, labels, material, materialid, medit:ref,
   /// gmsh:physical, region, regionid, cellentityids, part, partid (any letter case, `_` and blanks ignored).

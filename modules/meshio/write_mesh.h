@@ -10,6 +10,7 @@
 
 namespace stackmesh {
 
+/// In which form a mesh is written.
 struct MeshWriteOptions {
   bool per_label = false;         ///< surfaces: NAME_<label>.EXT for each label, closed on its own, outward
   bool msh2 = false;              ///< .msh as Gmsh 2.2 instead of 4.1

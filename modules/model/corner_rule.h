@@ -9,6 +9,10 @@ enum class JoinedDiagonal { none, rising, falling };
 /// The one rule for voxels that touch by a corner or an edge only (docs/contours.md): the background joins, so that
 /// parts which touch are apart as in 6-connected images; else a label whose two voxels hang together elsewhere joins;
 /// of two that could, the rising one.
+/// @param l00 label at the lower left of the corner; as the others an index of LabelVolume::labels, 0 the background
+/// @param l10 label at the lower right
+/// @param l01 label at the upper left
+/// @param l11 label at the upper right
 /// @param same asked with 0 for the rising diagonal (l00, l11) and 1 for the falling one (l10, l01): one component of
 /// the volume?
 template <class SameComponent>

@@ -48,7 +48,9 @@ struct LabelVolume {
 
 /// Whether a volume is as its comments above say: as many voxels as the size asks for, each with an entry in `labels`,
 /// spacing above 0, orthonormal axes, labels that ascend behind the background, and a voxel that is not background.
-/// @param name what the error calls it @throws Error(input)
+/// @param volume as a caller has filled it in
+/// @param name what the error calls it
+/// @throws Error(input) naming what is not so
 void check_label_volume(const LabelVolume& volume, const std::string& name);
 
 /// A volume of label numbers, x fastest, 0 for the background; place and names are set afterwards.

@@ -14,6 +14,7 @@ Vec3 in_space(Vec3 p, Space from, Space to);
 Frame between(Space from, Space to);
 
 /// Brings all points to another space and says so; where the map mirrors, triangles and elements are turned round.
+/// @param complex whose points and `space` change
 /// @param to the world frame that `frame` leads to, or another one
 /// @param frame stack coordinates to the world; used of values in Space::stack only
 void change_space(InterfaceComplex& complex, Space to, const Frame& frame = {});

@@ -8,7 +8,8 @@ namespace stackmesh {
 
 /// One figure of several meshes.
 struct ComparisonRow {
-  std::string id, name;            ///< "dice_min"; "least Dice"
+  std::string id;                  ///< for programs: "dice_min"
+  std::string name;                ///< for readers: "least Dice"
   std::vector<double> values;      ///< beside the reports; NaN where it was not measured
   std::vector<std::string> texts;  ///< the same, printed
   std::vector<std::size_t> best;   ///< columns with the best value; empty when all are equal or there is no better

@@ -22,6 +22,7 @@ struct HtmlScene {
   const SurfaceValues* values = nullptr;      ///< what a solver model says of the surface, if it is one's
 };
 
+/// How much the pictures of a page hold.
 struct HtmlOptions {
   int threads = 0;                             ///< 0: all of the machine; the page does not depend on it
   std::size_t bytes_limit = 22 * 1000 * 1000;  ///< of the pictures' data, base64; pictures are simplified to keep it
@@ -41,9 +42,9 @@ HtmlPictures draw_pictures(const HtmlScene& scene, const HtmlOptions& options = 
 
 /// A mesh of the page, and what is said of it.
 struct HtmlSubject {
-  std::string name;
-  const RunReport* report = nullptr;
-  const HtmlPictures* pictures = nullptr;
+  std::string name;                        ///< over its column and in its pictures, where there are several
+  const RunReport* report = nullptr;       ///< its figures and verdicts; never null
+  const HtmlPictures* pictures = nullptr;  ///< from draw_pictures(); null: the page shows none of this mesh
 };
 
 /// One HTML page for one mesh, or for several side by side; it needs nothing but a browser. The label pictures

@@ -19,13 +19,17 @@ struct TriangleValues {
 
 /// By what a page colours the surface of a solver model.
 struct SurfaceValues {
-  std::vector<std::string> sets;
-  double modulus_low_mpa = 0, modulus_high_mpa = 0, mises_high_mpa = 0;  ///< 0: there are none
-  std::vector<std::array<Vec3, 3>> corners;                              ///< of every face of a set, sorted
-  std::vector<TriangleValues> values;                                    ///< of each
+  std::vector<std::string> sets;  ///< names of face sets, the largest first; at most 250, the largest left out
+  double modulus_low_mpa = 0;     ///< smallest Young's modulus of an element; 0: none is known
+  double modulus_high_mpa = 0;    ///< largest Young's modulus of an element; 0: none is known
+  double mises_high_mpa = 0;      ///< von Mises stress that 99.5 % of the nodes keep below; 0: none is known
+  std::vector<std::array<Vec3, 3>> corners;  ///< of every face of a set, sorted
+  std::vector<TriangleValues> values;        ///< of each
 };
 
-/// @param mises_mpa of each node, of a solution; empty: none is known
+/// What a solver model says of every face of its sets.
+/// @param model with its sets; materials that only hold the place give no modulus
+/// @param mises_mpa von Mises stress of each node, of a solution; empty: none is known
 SurfaceValues surface_values(const SolverModel& model, const std::vector<double>& mises_mpa);
 
 /// The values of each triangle of a surface whose points are the model's; nothing where fewer than half of them are its

@@ -8,6 +8,7 @@
 
 namespace stackmesh {
 
+/// What to make a solver model of, and how.
 struct FemRunOptions {
   /// also where the input is a mesh: its outputs, reports, labels, order (set for the output), space
   MeshRunOptions mesh;
@@ -18,7 +19,7 @@ struct FemRunOptions {
   Contact contact = Contact::tie;                          ///< between parts, where the law file says nothing
   std::vector<std::pair<std::string, double>> skins;       ///< label, thickness in mm
   std::vector<std::string> selections;                     ///< see fem/selection.h
-  double sharp_deg = 50;
+  double sharp_deg = 50;               ///< outer faces that meet at an edge turning by more are of different sets
   std::optional<double> accuracy_rel;  ///< the load case is solved on finer and finer meshes until this is reached
   std::string result;       ///< of CalculiX (.frd), for this very model: its stress colours the page; empty: none
   std::string label_array;  ///< of a mesh file: the cell array that holds labels; empty: the usual names

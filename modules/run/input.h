@@ -40,14 +40,15 @@ struct InputOptions {
 
 /// The input as read: a volume, or contours and how they are to become sections.
 struct Input {
-  std::optional<LabelVolume> volume;
+  std::optional<LabelVolume> volume;    ///< the labels that were requested, all others background; unset: contours
   std::vector<LabelContours> contours;  ///< one entry a label
-  ContourStackOptions drawn;
-  bool anatomical = false;  ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
-  std::string path, kind;
+  ContourStackOptions drawn;            ///< how `contours` become sections; of no meaning for a volume
+  bool anatomical = false;              ///< coordinates are LPS; false: no anatomy is known, they are kept as they are
+  std::string path;               ///< as it was given, several separated by blanks; of labels in memory their name
+  std::string kind;               ///< "contours", "rtstruct", or the volume's (LabelVolume::kind)
   std::vector<LabelInfo> labels;  ///< without the background
   std::set<Label> voids;          ///< those of them that are not filled
-  std::vector<Warning> warnings;
+  std::vector<Warning> warnings;  ///< what reading found odd but could mend; later steps add theirs
 };
 
 /// Reads the input and keeps the labels that were requested. @throws Error(input), Error(usage)

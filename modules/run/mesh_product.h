@@ -16,7 +16,11 @@ struct MeshProduct {
   std::optional<ImageBox> image;  ///< of a label volume
 };
 
-/// @param mesh in LPS, or without anatomy; @param to the space that is written @param up in the space of `mesh`
+/// Brings a mesh, its stacking axis and the box of its image into the space that is written.
+/// @param mesh in LPS, or without anatomy
+/// @param labels numbers and names of all that are meshed, voids too
+/// @param to the space that is written
+/// @param up unit vector along the stacking axis, in the space of `mesh`
 /// @param volume the labels' grid; null for contours
 MeshProduct mesh_product(TetMesh mesh, std::vector<LabelInfo> labels, Space to, Vec3 up, const LabelVolume* volume);
 

@@ -16,20 +16,23 @@
 
 namespace stackmesh {
 
+/// What to mesh, how, and what to write.
 struct MeshRunOptions {
-  InputOptions input;
-  MeshOptions mesh;  ///< voids, name and values per label are set by the run
+  InputOptions input;  ///< what to read, and which labels of it
+  MeshOptions mesh;    ///< voids, name and values per label are set by the run
   std::vector<std::pair<std::string, LabelEndCaps>> label_caps_text;  ///< by the label's number or name
   std::vector<std::pair<std::string, double>> label_edges_text;       ///< edge length, mm
   std::vector<std::pair<std::string, double>> label_volumes_text;     ///< largest tetrahedron, mm3
   LayerTexts layers;                                                  ///< of wedges, under the outer faces of labels
   std::string space = "lps";                                          ///< "lps" or "ras"
-  std::vector<std::string> names_outputs;     ///< .json files for the labels' numbers, names and colours
-  std::vector<std::string> outputs, reports;  ///< file names; the ending gives the format
-  MeshWriteOptions write;                     ///< space and labels are set by the run
-  bool strict = false;                        ///< a lost detail is an error
-  bool full_report = false;                   ///< fidelity and verdicts also where no report is written
-  std::string command = "mesh", version;
+  std::vector<std::string> names_outputs;  ///< .json files for the labels' numbers, names and colours
+  std::vector<std::string> outputs;        ///< file names of meshes; the ending gives the format, surface or volume
+  std::vector<std::string> reports;        ///< file names; .html or .json
+  MeshWriteOptions write;                  ///< space and labels are set by the run
+  bool strict = false;                     ///< a lost detail is an error
+  bool full_report = false;                ///< fidelity and verdicts also where no report is written
+  std::string command = "mesh";            ///< that the report names: mesh, surface or fem
+  std::string version;                     ///< of the program, for the report
   std::vector<std::pair<std::string, std::string>> option_texts;  ///< for the report
   std::vector<Warning> notes;                                     ///< warnings of the caller, for the report
 };
@@ -44,8 +47,8 @@ using LabelsStage = std::function<void(const std::vector<LabelInfo>& labels)>;
 struct MadeMesh {
   InterfaceComplex surface;     ///< what write_surface() takes, in the space that was written
   std::optional<TetMesh> tets;  ///< what write_volume() takes
-  MeshWriteOptions write;
-  bool has_voids = false;  ///< then `surface` is what write.per_label asked for, and not the other form
+  MeshWriteOptions write;       ///< how the run wrote it, with the names of its labels
+  bool has_voids = false;       ///< then `surface` is what write.per_label asked for, and not the other form
 };
 
 /// Is given the mesh of a run that succeeded, in place of its being dropped.

@@ -37,6 +37,9 @@ struct ContourResult {
 /// (cv::findContours \cite suzuki1985 on the doubled mask, docs/contours.md), simplified by
 /// cv::approxPolyDP \cite ramer1972 \cite douglas1973 so that every pixel centre keeps its label and no contours
 /// cross. With simplify_px == 0 each label's area in a section is its pixel count, exactly.
+/// @param volume at least two slices along the axis
+/// @param options axis, simplification in pixels, threads
+/// @param progress is told how far it is, and may cancel
 /// @param faired where the corners of the contours lie; null: at the corners of the pixels
 /// @throws Error(input) for fewer than two slices along the axis or no label at all.
 ContourResult extract_sections(const LabelVolume& volume, const ContourOptions& options, Monitor& progress,

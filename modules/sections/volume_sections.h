@@ -29,7 +29,11 @@ struct VolumeSections {
   InterfaceComplex faired;        ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
 };
 
-/// @param name what the error calls the volume @throws Error(input) for fewer than two slices along the stacking axis
+/// Whether a volume can be cut into sections.
+/// @param volume only its size and spacing count
+/// @param axis along which it is to be cut; automatic: the one that stacking_axis() finds
+/// @param name what the error calls the volume
+/// @throws Error(input) for fewer than two slices along the stacking axis
 void check_slices(const LabelVolume& volume, StackAxis axis, const std::string& name);
 
 /// A label volume to its sections: virtual slices between far ones, interfaces faired, contours traced and simplified.

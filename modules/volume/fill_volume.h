@@ -34,6 +34,7 @@ struct FillOptions {
   /// the program stackmesh-tetgen; empty: the environment's STACKMESH_WORKER, else beside this program or library, or
   /// where it was installed
   std::string worker_path;
+  /// words that the program is called with; other ones are for tests, which start another program
   std::vector<std::string> worker_args = {"--tetgen-worker"};
 };
 
@@ -46,6 +47,7 @@ double thickness_in_edges(const InterfaceComplex& complex);
 
 /// What came of it. Only `verified` carries a mesh.
 struct FillResult {
+  /// How the filling ended.
   enum class Status {
     verified,        ///< filled; labels, faces, orientation and volumes were checked
     refused,         ///< the complex is not closed, intersects itself, or TetGen gave no mesh that holds it
@@ -54,10 +56,10 @@ struct FillResult {
     empty,           ///< nothing to fill, or TetGen succeeded without a single tetrahedron
     volume_mismatch  ///< a label's tetrahedra do not have the volume that its surface encloses
   };
-  Status status = Status::refused;
-  std::string message;            ///< one line: what filled it, or why nothing did
-  std::string fallback;           ///< one line: what was tried before in vain; empty when the first attempt succeeded
-  std::vector<Warning> warnings;  ///< a worker that was killed from outside and started again
+  Status status = Status::refused;  ///< tells whether `mesh` may be used: only when verified
+  std::string message;              ///< one line: what filled it, or why nothing did
+  std::string fallback;             ///< one line: what was tried before in vain; empty when the first attempt succeeded
+  std::vector<Warning> warnings;    ///< a worker that was killed from outside and started again
   /// the complex's points come first, bit-identical but for `moved_points`; points added inside follow
   TetMesh mesh;
   /// points of the complex that improving the tets moved a little (improve_deg; relax_surface.h), ascending
@@ -75,9 +77,9 @@ struct FillResult {
 /// faces then name the first of them.
 ///
 /// @param complex closed, in stack coordinates (z is the stacking axis), mm
-/// @throws Error(internal) when a triangle names a point that is not there or a coordinate is not finite,
-/// Error(usage)
-///         when an option is not positive
+/// @param options targets of size and shape, and bounds of time
+/// @throws Error(internal) when a triangle names a point that is not there or a coordinate is not finite, Error(usage)
+/// when an option is not positive
 FillResult fill_volume(const InterfaceComplex& complex, const FillOptions& options = {});
 
 }  // namespace stackmesh

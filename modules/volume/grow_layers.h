@@ -20,7 +20,7 @@ struct LayerPlan {
   std::vector<double> thickness_mm;   ///< of each column
   std::vector<Vec3> way;              ///< of each column: inwards, per mm of thickness
   std::vector<std::int32_t> layered;  ///< triangles with columns, ascending
-  std::map<Label, LayerSize> sizes;
+  std::map<Label, LayerSize> sizes;   ///< as requested; their counts say how many wedges a column is cut into
   std::vector<LayerFigures> figures;  ///< of each label, ascending
 };
 
@@ -31,11 +31,13 @@ struct LayerPlan {
 ///
 /// @param complex closed and without intersections, mm
 /// @param sizes of labels that have outer faces
+/// @param threads 0: all of the machine; the result does not depend on it
 LayerPlan plan_layers(const InterfaceComplex& complex, const std::map<Label, LayerSize>& sizes, int threads);
 
 /// Puts the layers of a plan over its filled core: wedges, pyramids where a layer ends along one side, tets where it
 /// ends at two.
 /// @param mesh of plan.core; becomes one of the whole complex
+/// @param plan that the core was made by
 void add_layers(TetMesh& mesh, const LayerPlan& plan);
 
 }  // namespace stackmesh

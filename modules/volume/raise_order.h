@@ -17,6 +17,7 @@ struct OrderOptions {
   int threads = 0;            ///< 0: all of the machine; the result does not depend on it
 };
 
+/// A mesh of second order, and how far its nodes left the straight edges.
 struct OrderResult {
   TetMesh mesh;                   ///< with `mid`; points of the linear mesh come first, unchanged but for moved_corners
   std::size_t moved_corners = 0;  ///< corners that moved onto the smooth surface
@@ -39,6 +40,7 @@ struct OrderResult {
 /// until their foot is straight.
 ///
 /// @param mesh linear, every tet positive, mm
+/// @param options smallest Jacobian, angles in degrees
 /// @throws Error(input) when the mesh has mid-side nodes already or a tet names a point that is not there
 OrderResult raise_order(TetMesh mesh, const OrderOptions& options = {});
 
