@@ -31,10 +31,13 @@ class Error : public std::runtime_error {
   std::string problem_, where_, mend_;
 };
 
-/// Shorthands: throw the error of that kind.
+/// Throws an Error(usage): the call itself is wrong. The texts are those of Error's constructor.
 [[noreturn]] void fail_usage(const std::string& what, const std::string& where, const std::string& mend);
+/// Throws an Error(input): the input cannot be read or is invalid.
 [[noreturn]] void fail_input(const std::string& what, const std::string& where, const std::string& mend);
+/// Throws an Error(output): a file or folder cannot be written.
 [[noreturn]] void fail_output(const std::string& what, const std::string& where, const std::string& mend);
+/// Throws an Error(internal), which asks the user to report a bug with the input.
 [[noreturn]] void fail_internal(const std::string& what, const std::string& where);
 
 }  // namespace stackmesh

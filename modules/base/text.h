@@ -15,6 +15,7 @@ std::string printable(std::string_view text);
 /// The same for text of several lines, which stay.
 std::string printable_lines(std::string_view text);
 
+/// Whether the last bytes of the text are those of `end`, upper and lower case apart; an empty end always is.
 bool ends_with(std::string_view text, std::string_view end);
 
 /// Those of the known names that are the most like a name that is not among them (by letters changed, added or left

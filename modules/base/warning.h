@@ -64,6 +64,7 @@ inline Warning warning_at(WarningCode code, const std::string& where, const std:
   return {code, where, where + ": " + what};
 }
 
+/// The sentence of each warning, in their order.
 std::vector<std::string> texts_of(const std::vector<Warning>& warnings);
 
 }  // namespace stackmesh

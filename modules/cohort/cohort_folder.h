@@ -110,13 +110,18 @@ class CohortLock {
   int file_ = -1;
 };
 
+/// Name of this machine as the system tells it; "unknown" where it does not.
 std::string host_name();
+/// Time in UTC to the second: "2025-01-31T12:00:00Z".
 std::string utc_now();
 
-/// The record as JSON, and back. @throws nlohmann::json::exception
+/// The record as the JSON of its file; bytes that are not UTF-8 are replaced.
 std::string to_json(const CaseRecord& record);
+/// The record that such JSON holds. @throws nlohmann::json::exception for text that is none or lacks a member
 CaseRecord case_record_of(const std::string& json);
+/// The plan as the JSON of .cohort/plan.json.
 std::string to_json(const CohortPlan& plan);
+/// The plan that such JSON holds. @throws nlohmann::json::exception for text that is none or lacks a member
 CohortPlan cohort_plan_of(const std::string& json);
 
 }  // namespace stackmesh

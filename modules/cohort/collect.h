@@ -71,9 +71,12 @@ Cohort collect(const CohortFolder& folder, const CollectOptions& options);
 
 /// A line for each label of each case, and one for each case without a result.
 std::string cohort_csv(const Cohort& cohort);
+/// The same for programs: the text of cohort.json, with the distributions of all figures.
 std::string cohort_json(const Cohort& cohort);
+/// The text of cohort.html: one page that needs nothing but a browser and the pictures beside it.
 std::string cohort_html(const Cohort& cohort);
 
+/// The state as tables and JSON write it: "done", "failed", "changed" or "missing".
 const char* to_text(CohortRow::State state);
 
 }  // namespace stackmesh

@@ -40,8 +40,9 @@ CaseLook look_at_case(const CohortCase& c, const CaseCommand& command, const std
 /// Fills in memory_mb and time_s from the sizes and the case's options.
 void foretell(CaseLook& look, const CohortCase& c);
 
-/// For the pipe between processes.
+/// The look as JSON, for the pipe between the process that looks and the one that runs the cases.
 std::string to_json(const CaseLook& look);
+/// The look that came through the pipe. @throws nlohmann::json::exception for text that is none or was cut off
 CaseLook case_look_of(const std::string& json);
 
 }  // namespace stackmesh

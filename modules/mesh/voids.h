@@ -14,6 +14,8 @@ struct Hollowed {
   std::vector<std::int32_t> original;  ///< per triangle: which it was
   std::vector<Label> behind;           ///< per triangle: the void on its open side, 0 where there is none
 };
+/// Makes background of the voids; triangles between two voids, or a void and the background, are left out. Without
+/// voids the complex stays as it is.
 Hollowed hollowed(const InterfaceComplex& complex, const std::set<Label>& voids);
 
 /// Gives the open sides of a hollowed complex's triangles, or of equal parts of each in their order, the void behind

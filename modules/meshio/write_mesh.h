@@ -25,8 +25,9 @@ bool is_volume_format(const std::string& path);
 /// own (base/installed_part.h).
 /// @throws Error(no_result) where that part is absent; any other ending passes
 void require_writer(const std::string& path);
-/// The endings of either, for messages.
+/// The endings of surface formats in one line, for messages.
 std::string surface_endings();
+/// The endings of volume formats in one line, for messages.
 std::string volume_endings();
 
 /// Writes the interfaces, in mm as they are, to one file (or one per label), in the format of its ending.

@@ -25,6 +25,7 @@ struct InterfaceComplex {
 /// How far a surface has come: as stitched, smoothed, or smoothed and remeshed.
 enum class SurfaceLevel { stitched, smoothed, enhanced };
 
+/// The level as reports write it: "stitched", "smoothed" or "enhanced".
 inline const char* to_text(SurfaceLevel level) {
   return level == SurfaceLevel::enhanced ? "enhanced" : level == SurfaceLevel::smoothed ? "smoothed" : "stitched";
 }

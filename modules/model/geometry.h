@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+/// Label slices to conforming surfaces and tetrahedral meshes: all types and functions of the library.
 namespace stackmesh {
 
 /// A tissue label as its input numbers it; 0 is the background.
@@ -15,21 +16,27 @@ struct Vec3 {
   double z = 0;  ///< along the third one
 };
 
+/// Sum of two vectors, or a point moved by a vector.
 inline Vec3 operator+(Vec3 a, Vec3 b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
+/// The vector from `b` to `a`.
 inline Vec3 operator-(Vec3 a, Vec3 b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+/// A vector made `s` times as long; below 0 it turns round.
 inline Vec3 operator*(double s, Vec3 a) {
   return {s * a.x, s * a.y, s * a.z};
 }
+/// Scalar product, mm2 of two lengths.
 inline double dot(Vec3 a, Vec3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+/// Vector product by the right-hand rule: normal to both, as long as the area that they span (mm2).
 inline Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// Length, mm.
 inline double norm(Vec3 a) {
   return std::sqrt(dot(a, a));
 }

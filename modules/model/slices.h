@@ -25,6 +25,7 @@ struct StackAxes {
   int v;  ///< in-plane y
   int w;  ///< stacking axis
 };
+/// The axes for slices across an axis of the volume (0 x, 1 y, 2 z).
 StackAxes axes_for(int stacking_axis);
 
 /// The slices [first, last) along the stacking axis.

@@ -18,8 +18,9 @@ constexpr int kTetFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
 constexpr int kTetFaceMids[4][3] = {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}};
 
 /// Corners of the two triangles at the ends of a wedge, in the order of Abaqus's S1 and S2, seen from inside
-/// anticlockwise; and their mid-side nodes (kWedgeEdges). Its other sides lie between elements of its label.
+/// anticlockwise. Its other sides lie between elements of its label.
 constexpr int kWedgeFaces[2][3] = {{0, 1, 2}, {3, 5, 4}};
+/// Mid-side nodes of those triangles (kWedgeEdges), each behind the corner that its edge begins at.
 constexpr int kWedgeFaceMids[2][3] = {{0, 1, 2}, {5, 4, 3}};
 
 /// A face of an element: of a tet by kTetFaces; of a wedge (TetMesh counts them behind the tets) by kWedgeFaces.
@@ -48,6 +49,7 @@ std::array<std::int32_t, 6> outward_face_of(TetFace f, const Tets& tets, const M
   }
   return nodes;
 }
+/// The same of a mesh.
 inline std::array<std::int32_t, 6> outward_face_of(const TetMesh& mesh, TetFace f) {
   return outward_face_of(f, mesh.tets, mesh.mid, mesh.wedges, mesh.wedge_mid);
 }

@@ -18,6 +18,10 @@ Frame between(Space from, Space to);
 /// @param to the world frame that `frame` leads to, or another one
 /// @param frame stack coordinates to the world; used of values in Space::stack only
 void change_space(InterfaceComplex& complex, Space to, const Frame& frame = {});
+/// The same for a volume mesh; where the map mirrors, its elements and interface triangles are turned round.
+/// @param mesh whose points and `space` change
+/// @param to the world frame that `frame` leads to, or another one
+/// @param frame stack coordinates to the world; used of values in Space::stack only
 void change_space(TetMesh& mesh, Space to, const Frame& frame = {});
 
 }  // namespace stackmesh

@@ -13,12 +13,15 @@ struct GridPoint {
   std::int32_t x = 0;  ///< times Stack::grid_x_mm: stack coordinate
   std::int32_t y = 0;  ///< times Stack::grid_y_mm: stack coordinate
 };
+/// Whether two points are the same, exactly.
 inline bool operator==(GridPoint a, GridPoint b) {
   return a.x == b.x && a.y == b.y;
 }
+/// Whether two points differ.
 inline bool operator!=(GridPoint a, GridPoint b) {
   return !(a == b);
 }
+/// Order by x, then y, for sorting and maps.
 inline bool operator<(GridPoint a, GridPoint b) {
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }

@@ -39,6 +39,7 @@ struct TetMesh {
   bool is_wedge(std::size_t element) const { return element >= tets.size(); }
 };
 
+/// Whether an entry of TetMesh::wedges is a pyramid: its corners 2 and 5 are one point.
 inline bool is_pyramid(const std::array<std::int32_t, 6>& wedge) {
   return wedge[2] == wedge[5];
 }

@@ -15,6 +15,7 @@ struct SharedCorners {
   std::array<int, 3> in_s = {0, 0, 0};  ///< the first `count` are places 0, 1, 2 of corners of s
   std::array<int, 3> in_t = {0, 0, 0};  ///< places of the same corners in t
 };
+/// Finds the corners that two triangles share; each holds indices of points, three different ones.
 SharedCorners shared_corners(const std::array<std::int32_t, 3>& s, const std::array<std::int32_t, 3>& t);
 
 /// True when a plane keeps two triangles without a common corner at least `gap` apart (gap well above
@@ -30,7 +31,10 @@ struct NearestPoints {
   Vec3 on_t;               ///< of the second one
   double squared = 1e300;  ///< of their distance, mm2
 };
+/// Nearest points by all pairs of edges, and each corner against the other triangle; triangles that cross are not
+/// noticed.
 NearestPoints nearest_points(const Corners3& s, const Corners3& t);
+/// Distance of two triangles that do not meet, squared, mm2.
 inline double squared_distance(const Corners3& s, const Corners3& t) {
   return nearest_points(s, t).squared;
 }

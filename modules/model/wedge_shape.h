@@ -29,6 +29,7 @@ struct WedgeNodes {
   std::array<Vec3, 15> at;  ///< mm, corners first
   bool quadratic = false;   ///< the mid-side nodes count
 };
+/// Nodes of an entry of mesh.wedges; quadratic where the mesh has mid-side nodes.
 inline WedgeNodes wedge_nodes(const TetMesh& mesh, std::size_t wedge) {
   WedgeNodes n;
   for (int k = 0; k < 6; ++k) n.at[k] = mesh.points[mesh.wedges[wedge][k]];
@@ -37,6 +38,7 @@ inline WedgeNodes wedge_nodes(const TetMesh& mesh, std::size_t wedge) {
   return n;
 }
 
+/// Evaluates the shape functions of 6 or 15 nodes at a place, whose weight does not count.
 inline WedgePoint wedge_point(const WedgeNodes& node, const WedgePlace& p) {
   const double l[3] = {1 - p.u - p.v, p.u, p.v};
   static constexpr double du[3] = {-1, 1, 0}, dv[3] = {-1, 0, 1};
@@ -80,6 +82,7 @@ inline const std::vector<WedgePlace>& wedge_volume_rule() {
   return rule;
 }
 
+/// Volume of a wedge or pyramid, mm3, exact up to rounding; negative where it is inside out.
 inline double wedge_volume(const WedgeNodes& nodes) {
   double sum = 0;
   for (const WedgePlace& p : wedge_volume_rule()) sum += p.weight * wedge_point(nodes, p).determinant;

@@ -60,6 +60,7 @@ Stack drawn_sections(Input& input);
 
 /// Makes background of the voids: what a mesh that leaves them empty is judged against.
 void empty_voids(Input& input);
+/// The same for sections: edges between two voids, or a void and the background, go.
 void empty_voids(Stack& stack, const std::set<Label>& voids);
 
 /// Puts a label volume that is stored finer than it was made onto the grid on which it was made, with a warning that

@@ -107,8 +107,9 @@ struct JudgeInput {
 /// The verdicts in the order in which they are read. Nothing throws.
 std::vector<Verdict> judge(const JudgeInput& input, const Limits& limits = {});
 
-/// The worst of them, and what the program returns: 0 pass or warn, 4 invalid, 6 outside a limit.
+/// The worst of them; pass where there are none.
 Status overall(const std::vector<Verdict>& verdicts);
+/// What the program returns: 0 pass or warn, 4 where a verdict on validity fails, else 6 where another one does.
 int exit_code(const std::vector<Verdict>& verdicts);
 
 }  // namespace stackmesh
