@@ -46,6 +46,7 @@ class AtomicFiles {
 /// A path that signals remove, until it goes. For temporary files that are no outputs.
 class RemovedOnSignals {
  public:
+  /// @param path need not be there yet
   explicit RemovedOnSignals(const std::string& path);
   ~RemovedOnSignals();
   RemovedOnSignals(const RemovedOnSignals&) = delete;

@@ -7,6 +7,7 @@ namespace stackmesh {
 /// `monitor`. Scopes nest; null: nothing is asked.
 class CancelScope {
  public:
+  /// @param monitor outlives the scope
   explicit CancelScope(const Monitor* monitor);
   ~CancelScope();
   CancelScope(const CancelScope&) = delete;

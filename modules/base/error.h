@@ -19,11 +19,12 @@ enum class ErrorKind {
 /// how to mend it; what() joins them as "WHAT, WHERE; HOW TO MEND".
 class Error : public std::runtime_error {
  public:
+  /// Each text is a part of what(), without a full stop.
   Error(ErrorKind kind, const std::string& what_is_wrong, const std::string& where, const std::string& how_to_mend);
-  ErrorKind kind() const noexcept { return kind_; }
+  ErrorKind kind() const noexcept { return kind_; }                 ///< the exit code of the program
   const std::string& problem() const noexcept { return problem_; }  ///< what is wrong
-  const std::string& where() const noexcept { return where_; }
-  const std::string& mend() const noexcept { return mend_; }  ///< what to do about it
+  const std::string& where() const noexcept { return where_; }      ///< file, section, label, entities or option
+  const std::string& mend() const noexcept { return mend_; }        ///< what to do about it
 
  private:
   ErrorKind kind_;

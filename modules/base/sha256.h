@@ -10,6 +10,7 @@ class Sha256 {
  public:
   Sha256();
   ~Sha256();
+  /// Goes on with these bytes.
   void add(std::string_view bytes);
   /// The digest as 64 hexadecimal digits; ends the feeding.
   std::string hex();

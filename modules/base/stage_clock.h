@@ -12,7 +12,10 @@ namespace stackmesh {
 /// Times the stages of a run and tells the progress display of them. A stage that runs again adds to its time.
 class StageClock {
  public:
+  /// `stages` get the times; both references outlive the clock.
   StageClock(Monitor& progress, std::vector<StageTime>& stages) : progress_(progress), stages_(stages) {}
+  /// Runs a stage, also when it throws, under the clock.
+  /// @return what `stage` returns
   template <class F>
   auto run(const std::string& name, F stage) {
     begin(name);

@@ -6,8 +6,9 @@ namespace stackmesh {
 
 /// What a stage took.
 struct StageTime {
-  std::string name;
-  double wall_s = 0, cpu_s = 0;
+  std::string name;   ///< such as "read" or "stitch"
+  double wall_s = 0;  ///< seconds by the clock
+  double cpu_s = 0;   ///< seconds of all cores together
 };
 
 /// Adds to the time of the stage of that name, or appends it.

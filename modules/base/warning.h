@@ -54,9 +54,9 @@ const char* to_text(WarningCode code);
 
 /// Something odd that did not end the run.
 struct Warning {
-  WarningCode code = WarningCode::other;
-  std::string where;  ///< file, label or section; "": the whole input or mesh
-  std::string text;   ///< a sentence for people; it names the place
+  WarningCode code = WarningCode::other;  ///< what it is about
+  std::string where;                      ///< file, label or section; "": the whole input or mesh
+  std::string text;                       ///< a sentence for people; it names the place
 };
 
 /// A warning that reads "WHERE: WHAT".

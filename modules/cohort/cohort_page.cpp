@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "cohort/collect.h"
 #include "cohort/page_files.h"
+#include "report/html_text.h"
 #include "report/page_files.h"
-#include "report/page_text.h"
 
 namespace stackmesh {
 namespace {

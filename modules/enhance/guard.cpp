@@ -250,51 +250,83 @@ std::vector<float> clearances(const ComplexMesh& mesh, const MoveLimits& limits)
   return out;
 }
 
-std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
-                                         const std::vector<float>& clearance, const std::vector<Vec3>& before,
-                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
-                                         const MoveLimits& limits, int threads) {
-  const double degree = M_PI / 180, limit = std::cos(limits.sheet_angle_deg * degree);
-  const double corner = limits.corner_angle_deg * degree, turn = std::cos(limits.turn_deg * degree);
-  const auto at = [&](const std::vector<Vec3>& p, std::int32_t t) {
-    const auto& v = mesh.triangles[t].v;
-    return Corners3{p[v[0]], p[v[1]], p[v[2]]};
-  };
-  const auto offends = [&](std::int32_t i, std::int32_t j) {
-    const SharedCorners h = shared_corners(mesh.triangles[i].v, mesh.triangles[j].v);
-    const Corners3 s = at(points, i), t = at(points, j);
+namespace {
+
+/// What triangles and pairs of them must keep when the vertices go from one place to another.
+class MoveTest {
+ public:
+  MoveTest(const ComplexMesh& mesh, const std::vector<float>& clearance, const std::vector<Vec3>& before,
+           const std::vector<Vec3>& points, const MoveLimits& limits)
+      : mesh_(mesh),
+        clearance_(clearance),
+        before_(before),
+        points_(points),
+        sheet_(std::cos(limits.sheet_angle_deg * kDegree)),
+        corner_(limits.corner_angle_deg * kDegree),
+        turn_(std::cos(limits.turn_deg * kDegree)),
+        turns_freely_(limits.turn_deg == 0) {}
+
+  /// The two meet beyond what they share, turned through each other, or are nearer or narrower than they must be and
+  /// were.
+  bool offends(std::int32_t i, std::int32_t j) const {
+    const SharedCorners h = shared_corners(mesh_.triangles[i].v, mesh_.triangles[j].v);
+    const Corners3 s = at(points_, i), t = at(points_, j);
     if (h.count == 0) {
-      const double gap = 0.5 * (clearance[i] + clearance[j]);
+      const double gap = 0.5 * (clearance_[i] + clearance_[j]);
       if (certainly_apart(s, t, gap)) return false;
       if (triangles_meet(s, t, h)) return true;
       const double d = squared_distance(s, t);
-      return d < gap * gap && d < squared_distance(at(before, i), at(before, j));
+      return d < gap * gap && d < squared_distance(at(before_, i), at(before_, j));
     }
     if (h.count == 2) {
       const double cosine = sheet_cosine(s, t, h);
       if (cosine < kWide) return false;
-      const Corners3 s_before = at(before, i), t_before = at(before, j);
+      const Corners3 s_before = at(before_, i), t_before = at(before_, j);
       const double cosine_before = sheet_cosine(s_before, t_before, h);
       if (turned_past(side_of(s_before, t_before, h), cosine_before, side_of(s, t, h), cosine)) return true;
-      if (cosine <= limit) return false;
+      if (cosine <= sheet_) return false;
       return cosine > cosine_before || triangles_meet(s, t, h);
     }
     return triangles_meet(s, t, h);
-  };
-  const auto spoiled = [&](std::int32_t i) {
-    const Corners3 s = at(points, i);
+  }
+
+  /// The triangle has no area, a narrower angle than it may have and had, or turned too far.
+  bool is_spoiled(std::int32_t i) const {
+    const Corners3 s = at(points_, i);
     const Vec3 area = cross(s[1] - s[0], s[2] - s[0]);
     if (!(dot(area, area) > 0)) return true;
-    if (corner == 0 && limits.turn_deg == 0) return false;
-    const Corners3 b = at(before, i);
-    if (corner > 0) {
+    if (corner_ == 0 && turns_freely_) return false;
+    const Corners3 b = at(before_, i);
+    if (corner_ > 0) {
       const double angle = smallest_angle(s[0], s[1], s[2]);
-      if (angle < corner && angle < smallest_angle(b[0], b[1], b[2])) return true;
+      if (angle < corner_ && angle < smallest_angle(b[0], b[1], b[2])) return true;
     }
-    if (limits.turn_deg == 0) return false;
+    if (turns_freely_) return false;
     const Vec3 old = cross(b[1] - b[0], b[2] - b[0]);
-    return dot(old, area) < turn * std::sqrt(dot(old, old) * dot(area, area)) * (1 - 1e-12);
-  };
+    return dot(old, area) < turn_ * std::sqrt(dot(old, old) * dot(area, area)) * (1 - 1e-12);
+  }
+
+ private:
+  static constexpr double kDegree = M_PI / 180;
+  Corners3 at(const std::vector<Vec3>& p, std::int32_t t) const {
+    const auto& v = mesh_.triangles[t].v;
+    return Corners3{p[v[0]], p[v[1]], p[v[2]]};
+  }
+
+  const ComplexMesh& mesh_;
+  const std::vector<float>& clearance_;
+  const std::vector<Vec3>&before_, &points_;
+  double sheet_, corner_, turn_;  // cosine; radians; cosine
+  bool turns_freely_;
+};
+
+}  // namespace
+
+std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const TriangleGrid& grid,
+                                         const std::vector<float>& clearance, const std::vector<Vec3>& before,
+                                         const std::vector<Vec3>& points, const std::vector<std::int32_t>& suspects,
+                                         const MoveLimits& limits, int threads) {
+  const MoveTest moves(mesh, clearance, before, points, limits);
   std::vector<char> is_suspect(mesh.triangles.size(), 0);
   for (std::int32_t t : suspects) is_suspect[t] = 1;
   // Where most are suspects, the buckets are gone through for pairs; else each suspect asks for its own.
@@ -306,7 +338,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
   parallel_for(asked + swept, threads, [&](std::size_t run) {
     auto& mine = found[run];
     const auto test = [&](std::int32_t i, std::int32_t j) {
-      if (offends(i, j)) {
+      if (moves.offends(i, j)) {
         mine.push_back(i);
         mine.push_back(j);
       }
@@ -321,7 +353,7 @@ std::vector<std::int32_t> find_offenders(const ComplexMesh& mesh, const Triangle
     }
     for (std::size_t n = run * kRun; n < std::min(suspects.size(), (run + 1) * kRun); ++n) {
       const std::int32_t i = suspects[n];
-      if (spoiled(i)) mine.push_back(i);
+      if (moves.is_spoiled(i)) mine.push_back(i);
       if (by_bucket) continue;
       grid.query(grid.box(i), [&](std::int32_t j) {
         if (j != i && !(is_suspect[j] && j < i)) test(std::min(i, j), std::max(i, j));

@@ -49,21 +49,21 @@ Vec3 wide_normal(const ComplexMesh& mesh, const Facets& facets, std::int32_t a, 
   return sum;
 }
 
-}  // namespace
+bool is_upright(const ComplexMesh& mesh, const RidgeOptions& o, std::int32_t a, std::int32_t b) {
+  const Vec3 d = mesh.points[b] - mesh.points[a];
+  return o.upright_deg > 0 && std::abs(d.z) > kUpright * norm(d);
+}
 
-std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
-  const int threads = o.threads;
-  const auto is_upright = [&](std::int32_t a, std::int32_t b) {
-    const Vec3 d = mesh.points[b] - mesh.points[a];
-    return o.upright_deg > 0 && std::abs(d.z) > kUpright * norm(d);
-  };
+/// Neighbours of each vertex along edges at which the surface is bent sharply, between its two triangles and over
+/// wider places beside them.
+std::map<std::int32_t, std::vector<std::int32_t>> sharp_edges(const ComplexMesh& mesh, const RidgeOptions& o) {
   const auto limit = [&](bool upright, double share) {
     return std::cos(share * (upright ? o.upright_deg : o.feature_deg) * M_PI / 180);
   };
-  const Facets facets(mesh, threads);
+  const Facets facets(mesh, o.threads);
   const std::vector<std::array<std::int32_t, 2>> edges = mesh.edges();
   std::vector<char> is_sharp(edges.size(), 0);
-  for_each_index(edges.size(), threads, [&](std::size_t e) {
+  for_each_index(edges.size(), o.threads, [&](std::size_t e) {
     const auto [a, b] = edges[e];
     if (mesh.is_curve_edge(a, b)) return;
     ShortList around;
@@ -71,17 +71,17 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
       if (mesh.triangles[t].v[0] == b || mesh.triangles[t].v[1] == b || mesh.triangles[t].v[2] == b)
         around.push_back(t);
     const Vec3 &n = facets.area[around[0]], &m = facets.area[around[1]];
-    is_sharp[e] = dot(n, m) <= limit(is_upright(a, b), 1) * norm(n) * norm(m);
+    is_sharp[e] = dot(n, m) <= limit(is_upright(mesh, o, a, b), 1) * norm(n) * norm(m);
   });
   const std::size_t run = edges.size() / 16 + 1;
-  parallel_for(16, threads, [&](std::size_t part) {
+  parallel_for(16, o.threads, [&](std::size_t part) {
     std::vector<std::int32_t> around, list, stamp(mesh.triangles.size(), 0);
     std::int32_t now = 0;
     for (std::size_t e = part * run; e < std::min(edges.size(), (part + 1) * run); ++e) {
       if (!is_sharp[e]) continue;
       const auto [a, b] = edges[e];
       mesh.edge_triangles(a, b, around);
-      const bool upright = is_upright(a, b);
+      const bool upright = is_upright(mesh, o, a, b);
       const double reach = upright ? o.upright_reach_mm : 0.375 * o.length_mm;
       const Vec3 left = wide_normal(mesh, facets, a, b, around[0], around[1], reach, stamp, ++now, list);
       const Vec3 right = wide_normal(mesh, facets, a, b, around[1], around[0], reach, stamp, ++now, list);
@@ -94,6 +94,13 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
     sharp[edges[e][0]].push_back(edges[e][1]);
     sharp[edges[e][1]].push_back(edges[e][0]);
   }
+  return sharp;
+}
+
+}  // namespace
+
+std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
+  std::map<std::int32_t, std::vector<std::int32_t>> sharp = sharp_edges(mesh, o);
   // Chains go on where exactly two sharp edges meet, nearly straight; a bundle of sharp edges is noise.
   const auto next = [&](std::int32_t from, std::int32_t v) {
     const auto& list = sharp[v];
@@ -111,7 +118,7 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
       chain.assign(1, {a, b});
       seen[{a, b}] = 1;
       double length = norm(mesh.points[a] - mesh.points[b]);
-      bool upright = is_upright(a, b);
+      bool upright = is_upright(mesh, o, a, b);
       int caps = 0;  // ends of the chain on a curve, such as the rim of a cap
       for (int side = 0; side < 2; ++side) {
         std::int32_t from = side ? b : a, v = side ? a : b;
@@ -121,7 +128,7 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
           seen[e] = 1;
           chain.push_back(e);
           length += norm(mesh.points[w] - mesh.points[v]);
-          upright = upright && is_upright(v, w);
+          upright = upright && is_upright(mesh, o, v, w);
           from = v;
           v = w;
         }
@@ -134,7 +141,7 @@ std::size_t mark_ridges(ComplexMesh& mesh, const RidgeOptions& o) {
     mesh.add_ridge(a, b);
     ++count;
   }
-  if (count) mesh.find_pinned(threads);
+  if (count) mesh.find_pinned(o.threads);
   return count;
 }
 

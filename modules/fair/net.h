@@ -31,9 +31,9 @@ struct Net {
   std::array<double, 3> spacing_mm = {1, 1, 1};  ///< of the voxels, along the stack's axes
   std::array<int, 3> size = {0, 0, 0};           ///< voxels along the stack's axes
   std::vector<Cell> cell;                        ///< of each vertex; ascending (z, y, x)
-  /// edges of the cell that the vertex's sheet crosses: bit 4 axis + p + 2 q for the
+  /// edges of the cell that the vertex's sheet crosses: bit 4 axis + p + 2 q for the edge along `axis` at sides p of
+  /// the next axis and q of the one after it
   std::vector<std::uint16_t> crossed;
-  ///< edge along `axis` at sides p of the next axis and q of the one after it
   std::vector<std::size_t> slab_start;                      ///< first vertex of slab z; size[2] + 2 entries
   std::vector<std::array<std::int32_t, kDirections>> next;  ///< neighbours along net edges; -1: none
   /// bit d: the vertex is to lie evenly between its neighbours in these directions

@@ -11,22 +11,28 @@ namespace stackmesh {
 
 /// What a label was made of, for the report.
 struct MaterialRow {
-  Label label = 0;
-  std::string name, law;  ///< law "": constant
+  Label label = 0;   ///< its number
+  std::string name;  ///< its name in the model
+  std::string law;   ///< "": constant
   /// of other kinds the moduli are those at small strain (orthotropic: along the fibre)
   MaterialKind kind = MaterialKind::linear;
-  std::size_t elements = 0;
-  double young_min_mpa = 0, young_mean_mpa = 0, young_max_mpa = 0;  ///< mean over the volume
-  double poisson = 0, density_mean_t_mm3 = 0;
-  double clamped_low = 0, clamped_high = 0;  ///< shares of its elements set to the floor, the ceiling
-  std::size_t materials = 1;                 ///< bins
-  double bin_error_rel = 0;                  ///< largest |bin's modulus / element's modulus - 1|
-  std::size_t voxels = 0;                    ///< of the image, inside the label
+  std::size_t elements = 0;       ///< of the label
+  double young_min_mpa = 0;       ///< smallest modulus of an element
+  double young_mean_mpa = 0;      ///< mean over the volume
+  double young_max_mpa = 0;       ///< largest modulus of an element
+  double poisson = 0;             ///< Poisson's ratio
+  double density_mean_t_mm3 = 0;  ///< mean mass density; 0: none
+  double clamped_low = 0;         ///< share of its elements set to the floor
+  double clamped_high = 0;        ///< share of its elements set to the ceiling
+  std::size_t materials = 1;      ///< bins
+  double bin_error_rel = 0;       ///< largest |bin's modulus / element's modulus - 1|
+  std::size_t voxels = 0;         ///< of the image, inside the label
 };
 
+/// What every label was made of.
 struct MaterialReport {
-  std::vector<MaterialRow> labels;
-  std::vector<Warning> warnings;
+  std::vector<MaterialRow> labels;  ///< ascending
+  std::vector<Warning> warnings;    ///< of intensities, margins and fibres
 };
 
 /// Checks a plan against the labels (with their solver names) before anything long begins.

@@ -13,6 +13,7 @@ namespace stackmesh {
 struct PieceOptions {
   std::optional<int> keep_largest;      ///< so many of each label, the largest
   std::optional<double> min_piece_mm3;  ///< and none below that
+  /// Whether a piece may be left out.
   bool any() const { return keep_largest || min_piece_mm3; }
 };
 

@@ -33,7 +33,7 @@ enum class Target { surface, volume };
 
 /// How labels become a mesh. The defaults are those of the command `stackmesh mesh`.
 struct MeshOptions {
-  Target target = Target::volume;
+  Target target = Target::volume;            ///< how far it goes
   std::set<Label> voids;                     ///< labels that bound the others and are not filled
   PieceOptions pieces;                       ///< which pieces of each label are meshed
   SectionOptions sections;                   ///< labels to sections: fairing, simplification, virtual sections
@@ -60,7 +60,8 @@ enum class Closure { skipped, verified, failed };
 
 /// Why there is no valid mesh.
 struct Refusal {
-  std::string problem, mend;
+  std::string problem;                  ///< what is wrong
+  std::string mend;                     ///< what may help
   std::vector<std::int32_t> triangles;  ///< of `surface`, where it fails; ascending
 };
 
@@ -72,10 +73,11 @@ struct LabelMesh {
   SurfaceLevel level = SurfaceLevel::stitched;  ///< how far enhancement came
   SurfaceCheck surface_check;                   ///< what the exact checks say of `surface`
   std::optional<TetMesh> tets;                  ///< conforming; its faces are the interfaces, without voids
-  std::optional<VolumeCheck> tets_check;
-  Closure closure = Closure::skipped;
-  std::map<Label, double> input_volume_mm3;  ///< of each label's voxels; empty of contours
+  std::optional<VolumeCheck> tets_check;        ///< what the exact checks say of `tets`
+  Closure closure = Closure::skipped;           ///< what came of filling the surface
+  std::map<Label, double> input_volume_mm3;     ///< of each label's voxels; empty of contours
 
+  /// What the labels became in their planes.
   struct {
     /// of the voxels on which the labels were made; 0 of contours
     std::array<double, 3> effective_spacing_mm = {0, 0, 0};
@@ -84,7 +86,9 @@ struct LabelMesh {
     /// of the contours: vertices before and after simplification
     std::size_t loops = 0, vertices_traced = 0, vertices = 0;
   } contours;
+  /// The surface as it was stitched, before enhancement.
   struct {
+    /// counts of it; points that neither section had; what the exact checks found
     std::size_t vertices = 0, triangles = 0, added_points = 0, open_edges = 0, self_intersections = 0;
     std::map<Label, LabelCaps> caps;  ///< how each label ends
   } stitched;
@@ -98,19 +102,20 @@ struct LabelMesh {
   std::vector<Label> behind;
   std::vector<LayerFigures> layers;  ///< what came of MeshOptions::layers, places in the coordinates of the mesh
   std::string lost_detail;           ///< what a strict caller does not accept: a fallback; "": nothing
-  std::vector<Warning> warnings;
-  std::vector<StageTime> stages;
+  std::vector<Warning> warnings;     ///< of all stages, in their order
+  std::vector<StageTime> stages;     ///< what each took, in their order
 };
 
 /// There is no valid mesh; `partial` says how far it came and holds the surface that was refused.
 class MeshRefused : public Error {
  public:
-  MeshRefused(const Refusal& why, LabelMesh partial, const std::string& where)
+  /// `made` becomes `partial`; `where` names the input in the message.
+  MeshRefused(const Refusal& why, LabelMesh made, const std::string& where)
       : Error(ErrorKind::no_result, why.problem, where, why.mend),
         refusal(why),
-        partial(std::make_shared<LabelMesh>(std::move(partial))) {}
-  Refusal refusal;
-  std::shared_ptr<LabelMesh> partial;
+        partial(std::make_shared<LabelMesh>(std::move(made))) {}
+  Refusal refusal;                     ///< why
+  std::shared_ptr<LabelMesh> partial;  ///< never null
 };
 
 /// Labels on a grid to a conforming mesh: sections, stitched (\cite wang2005, section 3), enhanced (section 4), filled

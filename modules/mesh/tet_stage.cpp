@@ -13,13 +13,21 @@
 namespace stackmesh {
 namespace {
 
-FillOptions fill_options(const MeshOptions& o, SurfaceLevel level) {
+/// Below it TetGen finds next to no place for a point inside that makes a better tetrahedron of the surface's
+/// triangles, and looks for most of its time; the improvement, which may put points anywhere, does.
+constexpr double kThinInEdges = 0.8;
+
+FillOptions fill_options(const MeshOptions& o, const InterfaceComplex& surface, SurfaceLevel level) {
   FillOptions options = o.fill;
   options.known_sound = true;
   options.threads = o.threads;
   if (level == SurfaceLevel::enhanced) {  // good triangles: quality may be requested of inner tetrahedra
-    if (!options.radius_edge) options.radius_edge = 1.4;
-    if (!options.max_volume_mm3) options.inner_growth = 2;
+    const bool sizes_requested =
+        options.radius_edge || options.dihedral_deg || options.max_volume_mm3 || !options.label_max_volume_mm3.empty();
+    if (sizes_requested || thickness_in_edges(surface) > kThinInEdges) {
+      if (!options.radius_edge) options.radius_edge = 1.4;
+      if (!options.max_volume_mm3) options.inner_growth = 2;
+    }
     options.improve_deg = std::max(24.0, options.dihedral_deg.value_or(0));
   } else if (options.dihedral_deg) {
     options.improve_deg = options.dihedral_deg;
@@ -69,17 +77,17 @@ void refine(TetStage& out, SurfaceStage& surface, const Frame& frame, const Mesh
 
 void fill_stage(SurfaceStage& surface, const Call& call, const std::atomic<bool>* given_up) {
   const MeshOptions& o = call.options;
-  FillOptions options = fill_options(o, surface.level);
-  options.given_up = given_up;
   const bool whole = o.voids.empty();
   if (!whole) surface.hollowed = hollowed(surface.complex, o.voids);
   const InterfaceComplex& body = whole ? surface.complex : surface.hollowed.complex;
   if (!o.layers.empty()) {
     check_outer_faces(body, o.layers);
     surface.layers = plan_layers(body, o.layers, o.threads);
-    options.outside_is_empty = false;  // the layers lie there
   }
   const InterfaceComplex& core = surface.layers ? surface.layers->core : body;
+  FillOptions options = fill_options(o, core, surface.level);
+  options.given_up = given_up;
+  if (surface.layers) options.outside_is_empty = false;  // the layers lie there
   refuse_too_many(estimate_tets(core, options), o);
   surface.filled = fill_volume(core, options);
   if (whole) return;

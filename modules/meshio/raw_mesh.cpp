@@ -51,6 +51,11 @@ std::string kind_of(int vtk_type) {
   }
 }
 
+/// -1 where it is none, or too large for one.
+std::int32_t index(std::int64_t i) {
+  return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i);
+}
+
 }  // namespace
 
 void MeshBytes::fail(const std::string& what) const {
@@ -227,17 +232,11 @@ std::int64_t read_integer(const char* bytes, Scalar type, bool swap) {
 
 void RawMesh::add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
   // Whether the point is there is checked when the whole file is known; what no index can be becomes -1.
-  const auto index = [](std::int64_t i) {
-    return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i);
-  };
   triangles.push_back({index(a), index(b), index(c)});
   triangle_cell.push_back(static_cast<std::int32_t>(cells));
 }
 
 void RawMesh::add_wedge(const std::array<std::int64_t, 15>& nodes, bool second_order) {
-  const auto index = [](std::int64_t i) {
-    return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i);
-  };
   auto& corners = wedges.emplace_back();
   for (int k = 0; k < 6; ++k) corners[k] = index(nodes[k]);
   wedge_cell.push_back(static_cast<std::int32_t>(cells));
@@ -256,15 +255,44 @@ void RawMesh::add_polygon(const std::int64_t* nodes, std::size_t count) {
   ++cells;
 }
 
+void RawMesh::add_strip(const std::int64_t* n, std::size_t count) {
+  ++strips;
+  for (std::size_t i = 0; i + 2 < count; ++i) {
+    if (i % 2 == 0) add_triangle(n[i], n[i + 1], n[i + 2]);
+    else add_triangle(n[i + 1], n[i], n[i + 2]);
+  }
+}
+
+void RawMesh::add_tet(const std::int64_t* n, bool second_order) {
+  tets.push_back({index(n[0]), index(n[1]), index(n[2]), index(n[3])});
+  tet_cell.push_back(static_cast<std::int32_t>(cells));
+  if (!second_order) return;
+  has_quadratic = true;
+  midside.resize(tets.size() - 1, {-1, -1, -1, -1, -1, -1});
+  midside.push_back({index(n[4]), index(n[5]), index(n[6]), index(n[7]), index(n[8]), index(n[9])});
+}
+
+void RawMesh::add_wedge_cell(int type, const std::int64_t* n, std::size_t count) {
+  using namespace vtk_cell;
+  const bool is_pyramid = type == pyramid || type == quadratic_pyramid;
+  const bool second = type == quadratic_wedge || type == quadratic_pyramid;
+  if (count != (is_pyramid ? (second ? 13u : 5u) : (second ? 15u : 6u))) {
+    ++unsupported[kind_of(type)];
+    return;
+  }
+  std::array<std::int64_t, 15> nodes = {};
+  if (!is_pyramid) std::copy(n, n + count, nodes.begin());
+  else if (!second) nodes = {n[0], n[3], n[4], n[1], n[2], n[4]};
+  else nodes = {n[0], n[3], n[4], n[1], n[2], n[4], n[8], n[12], n[9], n[6], n[11], n[10], n[5], n[7], n[4]};
+  add_wedge(nodes, second);
+}
+
 void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
   using namespace vtk_cell;
   const auto wants = [&](std::size_t nodes) {
     if (count != nodes)
       fail_input("a cell of VTK type " + std::to_string(type) + " with " + std::to_string(count) + " nodes",
                  path + ", cell " + std::to_string(cells), kMend);
-  };
-  const auto index = [](std::int64_t i) {
-    return i < 0 || i > std::numeric_limits<std::int32_t>::max() ? -1 : static_cast<std::int32_t>(i);
   };
   switch (type) {
     case vertex:
@@ -294,48 +322,19 @@ void RawMesh::add_cell(int type, const std::int64_t* n, std::size_t count) {
       add_polygon(n, count);
       return;
     case strip:
-      ++strips;
-      for (std::size_t i = 0; i + 2 < count; ++i) {
-        if (i % 2 == 0) add_triangle(n[i], n[i + 1], n[i + 2]);
-        else add_triangle(n[i + 1], n[i], n[i + 2]);
-      }
+      add_strip(n, count);
       break;
     case tet:
-    case quadratic_tet: {
+    case quadratic_tet:
       wants(type == tet ? 4 : 10);
-      tets.push_back({index(n[0]), index(n[1]), index(n[2]), index(n[3])});
-      tet_cell.push_back(static_cast<std::int32_t>(cells));
-      if (type == quadratic_tet) {
-        has_quadratic = true;
-        midside.resize(tets.size() - 1, {-1, -1, -1, -1, -1, -1});
-        midside.push_back({index(n[4]), index(n[5]), index(n[6]), index(n[7]), index(n[8]), index(n[9])});
-      }
+      add_tet(n, type == quadratic_tet);
       break;
-    }
     case wedge:
-    case quadratic_wedge: {
-      const bool second = type == quadratic_wedge;
-      if (count != (second ? 15u : 6u)) {
-        ++unsupported[kind_of(type)];
-        break;
-      }
-      std::array<std::int64_t, 15> nodes = {};
-      std::copy(n, n + count, nodes.begin());
-      add_wedge(nodes, second);
-      break;
-    }
+    case quadratic_wedge:
     case pyramid:
-    case quadratic_pyramid: {
-      const bool second = type == quadratic_pyramid;
-      if (count != (second ? 13u : 5u)) {
-        ++unsupported[kind_of(type)];
-        break;
-      }
-      std::array<std::int64_t, 15> nodes = {n[0], n[3], n[4], n[1], n[2], n[4]};
-      if (second) nodes = {n[0], n[3], n[4], n[1], n[2], n[4], n[8], n[12], n[9], n[6], n[11], n[10], n[5], n[7], n[4]};
-      add_wedge(nodes, second);
+    case quadratic_pyramid:
+      add_wedge_cell(type, n, count);
       break;
-    }
     default:
       ++unsupported[kind_of(type)];
   }

@@ -119,6 +119,12 @@ struct RawMesh {
   void note_space(std::string_view comment);
 
  private:
+  /// Four corners, and six mid-side nodes of second order, in VTK's order.
+  void add_tet(const std::int64_t* nodes, bool second_order);
+  /// A VTK strip: every three nodes in a row are a triangle, every second one turned round.
+  void add_strip(const std::int64_t* nodes, std::size_t count);
+  /// A VTK wedge or pyramid of either order; one with another number of nodes is counted as unsupported.
+  void add_wedge_cell(int vtk_type, const std::int64_t* nodes, std::size_t count);
   void add_wedge(const std::array<std::int64_t, 15>& nodes, bool second_order);
   void add_triangle(std::int64_t a, std::int64_t b, std::int64_t c);
 };

@@ -9,13 +9,15 @@ namespace stackmesh {
 
 /// A straight segment between grid points.
 struct GridSegment {
-  GridPoint a, b;
+  GridPoint a;  ///< where it begins
+  GridPoint b;  ///< where it ends
 };
 
 /// Finds the segments near a grid point or another segment: a uniform grid of square cells, each with the
 /// segments whose one-unit neighbourhood meets it.
 class EdgeGrid {
  public:
+  /// Keeps indices of `segments`, not the segments.
   explicit EdgeGrid(const std::vector<GridSegment>& segments);
 
   /// Calls visit(segment index) for a superset of the segments that pass within one unit of p.

@@ -11,11 +11,18 @@ namespace stackmesh {
 struct FairedLabels {
   /// A contour's vertex: the pixel corner that it stands for, and how far it lies from there, in pixels.
   struct Corner {
-    enum Part : std::uint8_t { whole, south, north };
-    std::int32_t x, y;
+    /// Which contour at the corner it is of.
+    enum Part : std::uint8_t {
+      whole,  ///< the only one
+      south,  ///< of two, that around the pixel with the smaller y
+      north   ///< the other one
+    };
+    std::int32_t x;  ///< of the pixel corner, along x
+    std::int32_t y;  ///< of the pixel corner, along y
     /// of two contours that pass one corner, the one around the pixel with the smaller y is the southern one
     Part part;
-    float dx, dy;
+    float dx;  ///< from there along x, pixels
+    float dy;  ///< from there along y, pixels
   };
   /// of each slice, ascending (y, x, part); corners that are absent stay where they are
   std::vector<std::vector<Corner>> slices;

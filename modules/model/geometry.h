@@ -10,7 +10,9 @@ using Label = std::int32_t;
 
 /// A point or vector in mm.
 struct Vec3 {
-  double x = 0, y = 0, z = 0;
+  double x = 0;  ///< along the first axis of its Space
+  double y = 0;  ///< along the second one
+  double z = 0;  ///< along the third one
 };
 
 inline Vec3 operator+(Vec3 a, Vec3 b) {
@@ -48,11 +50,13 @@ inline const char* to_text(Space space) {
 /// A rigid (possibly mirroring) map p -> origin + x * axes[0] + y * axes[1] + z * axes[2]; the axes are
 /// orthonormal. It takes stack coordinates (in-plane x, y; stacking axis z; mm) to the world.
 struct Frame {
-  Vec3 origin;
-  std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  Vec3 origin;                                                               ///< where 0, 0, 0 lies in the world
+  std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< of the stack, in the world
   Space world = Space::lps;  ///< where it leads: LPS, or the input's own axes where no anatomy is known
 
+  /// A point of the stack in the world, mm.
   Vec3 to_world(Vec3 p) const { return origin + (p.x * axes[0] + p.y * axes[1] + p.z * axes[2]); }
+  /// The inverse of to_world().
   Vec3 to_stack(Vec3 p) const {
     const Vec3 d = p - origin;
     return {dot(d, axes[0]), dot(d, axes[1]), dot(d, axes[2])};

@@ -19,6 +19,7 @@ struct IntensityVolume {
   std::string kind;               ///< "nifti", "nrrd", "metaimage", "gipl", ...
   std::vector<Warning> warnings;  ///< what reading found odd but could mend
 
+  /// Place of voxel (i, j, k) in the values.
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i; }
   /// World position (LPS, mm) of a continuous voxel index.
   Vec3 world(double i, double j, double k) const {

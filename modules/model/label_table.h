@@ -15,9 +15,9 @@ namespace stackmesh {
 /// throws Error(usage) for a malformed text, Error(input) for an absent label.
 class LabelTable {
  public:
-  explicit LabelTable(const std::vector<LabelInfo>& labels);  ///< without the background
-  explicit LabelTable(const LabelVolume& volume);
-  explicit LabelTable(const std::vector<LabelContours>& contours);
+  explicit LabelTable(const std::vector<LabelInfo>& labels);        ///< without the background
+  explicit LabelTable(const LabelVolume& volume);                   ///< of all of its labels but the background
+  explicit LabelTable(const std::vector<LabelContours>& contours);  ///< of one label each
 
   /// Indices of the selected labels in what the table was made of (of a volume: without labels[0]), ascending.
   std::vector<std::size_t> resolve(const std::string& text, const std::string& option = "--label") const;

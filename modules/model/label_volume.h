@@ -12,8 +12,8 @@ namespace stackmesh {
 
 /// A label of the input: its own number, its name ("" when the input has none), its colour if the input carries one.
 struct LabelInfo {
-  Label number = 0;
-  std::string name;
+  Label number = 0;                                                  ///< as the input has it
+  std::string name;                                                  ///< "": none
   std::optional<std::array<std::uint8_t, 3>> colour = std::nullopt;  ///< red, green, blue
 };
 
@@ -26,17 +26,19 @@ struct LabelVolume {
   std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< orthonormal, LPS
   /// false: no anatomy is known (PNG stacks); coordinates as they are
   bool anatomical = true;
-  /// the image goes on before the first voxel along an axis (a cropped
+  /// along each axis the image goes on before the first voxel (of a cropped grid): that is not its border
   std::array<bool, 3> goes_on_low = {false, false, false};
-  std::array<bool, 3> goes_on_high = {false, false, false};  ///< grid), or behind the last one: that is not its border
-  std::vector<std::uint16_t> voxels;                         ///< size[0] * size[1] * size[2]
+  std::array<bool, 3> goes_on_high = {false, false, false};  ///< the same behind the last voxel
+  std::vector<std::uint16_t> voxels;                         ///< size[0] * size[1] * size[2], indices of `labels`
   std::vector<LabelInfo> labels;                             ///< labels[0] is {0, ""}
   /// "nifti", "nrrd", "seg.nrrd", "metaimage", "gipl", "slices", "masks", "dicom", "dicomseg"
   std::string kind;
   std::vector<Warning> warnings;  ///< what reading found odd but could mend
 
+  /// Place of voxel (i, j, k) in `voxels`.
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i; }
   Space space() const { return anatomical ? Space::lps : Space::none; }  ///< of world()
+  /// Of one voxel.
   double voxel_volume_mm3() const { return spacing_mm[0] * spacing_mm[1] * spacing_mm[2]; }
   /// World position (LPS, mm) of a continuous voxel index.
   Vec3 world(double i, double j, double k) const {

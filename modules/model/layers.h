@@ -23,19 +23,23 @@ enum class LayerLimit {
 
 /// A connected part of a label's outer faces where the layer is thinner than asked for, or missing.
 struct LayerPlace {
-  Vec3 at_mm;  ///< a point of the surface near its middle
-  double area_mm2 = 0;
-  double thickness_mm = 0;  ///< the smallest there; 0: none
-  LayerLimit why = LayerLimit::none;
+  Vec3 at_mm;                         ///< a point of the surface near its middle
+  double area_mm2 = 0;                ///< of the outer faces
+  double thickness_mm = 0;            ///< the smallest there; 0: none
+  LayerLimit why = LayerLimit::none;  ///< what keeps it from being thicker
 };
 
 /// What a layer came to. Shares are of the area of the label's outer faces.
 struct LayerFigures {
-  Label label = 0;
-  LayerSize asked;
-  std::size_t wedges = 0, pyramids = 0, tets = 0;  ///< elements of the layer
-  /// full: 95 % of the thickness and more, all over a face
-  double area_mm2 = 0, full_rel = 0, thinned_rel = 0, missing_rel = 0;
+  Label label = 0;                 ///< whose outer faces it lies under
+  LayerSize asked;                 ///< as it was requested
+  std::size_t wedges = 0;          ///< of the layer
+  std::size_t pyramids = 0;        ///< of the layer, in which it ends
+  std::size_t tets = 0;            ///< of the layer, in which it ends
+  double area_mm2 = 0;             ///< of the label's outer faces
+  double full_rel = 0;             ///< where it has 95 % of the thickness or more, all over a face
+  double thinned_rel = 0;          ///< where it is thinner
+  double missing_rel = 0;          ///< where there is none
   double thickness_min_mm = 0;     ///< where there is any
   std::vector<LayerPlace> places;  ///< largest first
 };

@@ -9,8 +9,10 @@ namespace stackmesh {
 
 /// A slice of palette indices, rows along y.
 struct Slice {
-  int width = 0, height = 0;
-  std::vector<std::uint16_t> pixels;
+  int width = 0;                      ///< pixels along x
+  int height = 0;                     ///< pixels along y
+  std::vector<std::uint16_t> pixels;  ///< width * height indices of LabelVolume::labels, x fastest
+  /// The index of a pixel; outside of the slice the background.
   std::uint16_t at(int x, int y) const {
     return x < 0 || y < 0 || x >= width || y >= height ? 0 : pixels[static_cast<std::size_t>(y) * width + x];
   }
@@ -19,7 +21,9 @@ struct Slice {
 /// The volume's axes as the stack has them: in-plane x, in-plane y, stacking axis; always a cyclic
 /// permutation.
 struct StackAxes {
-  int u, v, w;
+  int u;  ///< in-plane x: 0, 1, 2 for x, y, z of the volume
+  int v;  ///< in-plane y
+  int w;  ///< stacking axis
 };
 StackAxes axes_for(int stacking_axis);
 

@@ -33,7 +33,9 @@ struct TetMesh {
   std::vector<std::array<std::int32_t, 9>> wedge_mid = {};
   Space space = Space::stack;  ///< of the points; model/space.h brings them to another
 
+  /// Tets and wedges together.
   std::size_t elements() const { return tets.size() + wedges.size(); }
+  /// Whether the element of that number is a wedge or a pyramid; its place in `wedges` is element - tets.size().
   bool is_wedge(std::size_t element) const { return element >= tets.size(); }
 };
 

@@ -11,8 +11,9 @@ using Corners3 = std::array<Vec3, 3>;
 
 /// Which corners two triangles share by index: `count`, and their places in each.
 struct SharedCorners {
-  int count = 0;
-  std::array<int, 3> in_s = {0, 0, 0}, in_t = {0, 0, 0};
+  int count = 0;                        ///< 0 to 3
+  std::array<int, 3> in_s = {0, 0, 0};  ///< the first `count` are places 0, 1, 2 of corners of s
+  std::array<int, 3> in_t = {0, 0, 0};  ///< places of the same corners in t
 };
 SharedCorners shared_corners(const std::array<std::int32_t, 3>& s, const std::array<std::int32_t, 3>& t);
 
@@ -25,8 +26,9 @@ bool triangles_meet(const Corners3& s, const Corners3& t, const SharedCorners& s
 
 /// The nearest points of two triangles that do not meet, and their distance, squared.
 struct NearestPoints {
-  Vec3 on_s, on_t;
-  double squared = 1e300;
+  Vec3 on_s;               ///< of the first triangle
+  Vec3 on_t;               ///< of the second one
+  double squared = 1e300;  ///< of their distance, mm2
 };
 NearestPoints nearest_points(const Corners3& s, const Corners3& t);
 inline double squared_distance(const Corners3& s, const Corners3& t) {

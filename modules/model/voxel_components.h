@@ -10,6 +10,7 @@ namespace stackmesh {
 /// The 6-connected components of all labels of a volume, as runs along the volume's x.
 class VoxelComponents {
  public:
+  /// `axes` are those of the stack, in which of() is asked.
   VoxelComponents(const LabelVolume& volume, const StackAxes& axes);
   /// The component's number of a voxel that is not background, in the stack's axes.
   std::int32_t of(int x, int y, int slice) const;

@@ -12,19 +12,22 @@ namespace stackmesh {
 /// A place in a wedge: u and v are the coordinates of corners 1 and 2 within the triangle, w runs from -1 (corners 0 1
 /// 2) to 1.
 struct WedgePlace {
-  double u = 0, v = 0, w = 0, weight = 0;
+  double u = 0;       ///< from 0
+  double v = 0;       ///< from 0; u + v at most 1
+  double w = 0;       ///< -1 to 1
+  double weight = 0;  ///< in a rule of integration
 };
 
 /// The position, and its determinant (the volume is its integral over the place: half the mean times 2).
 struct WedgePoint {
-  Vec3 position;
-  double determinant = 0;
+  Vec3 position;           ///< mm
+  double determinant = 0;  ///< of its derivatives by the place, mm3; above 0 in a valid wedge
 };
 
 /// The nodes of a wedge: 6 corners, of second order and 9 mid-side nodes.
 struct WedgeNodes {
-  std::array<Vec3, 15> at;
-  bool quadratic = false;
+  std::array<Vec3, 15> at;  ///< mm, corners first
+  bool quadratic = false;   ///< the mid-side nodes count
 };
 inline WedgeNodes wedge_nodes(const TetMesh& mesh, std::size_t wedge) {
   WedgeNodes n;

@@ -62,15 +62,19 @@ std::string file_name(const std::string& path) {
   return path.substr(path.rfind('/') + 1);
 }
 
-}  // namespace
+enum class Better { less, more, neither };
 
-std::vector<ComparisonRow> compare(const std::vector<RunReport>& reports) {
-  std::vector<ComparisonRow> rows;
-  enum class Better { less, more, neither };
-  const auto add = [&](const char* id, const char* name, const char* format, Better better, auto value) {
+/// Rows of a table, one figure after the other.
+class Rows {
+ public:
+  explicit Rows(const std::vector<RunReport>& reports) : reports_(reports) {}
+
+  /// @param value of a report; NaN: not measured @param format for std::printf
+  template <class Value>
+  void add(const char* id, const char* name, const char* format, Better better, Value value) {
     ComparisonRow row;
     row.id = id, row.name = name;
-    for (const RunReport& r : reports) {
+    for (const RunReport& r : reports_) {
       row.values.push_back(value(r));
       row.texts.push_back(printed(format, row.values.back()));
     }
@@ -85,71 +89,110 @@ std::vector<ComparisonRow> compare(const std::vector<RunReport>& reports) {
     if (better != Better::neither && differ)
       for (std::size_t i = 0; i < row.values.size(); ++i)
         if (rank(row.values[i]) == rank(best)) row.best.push_back(i);
-    rows.push_back(std::move(row));
-  };
-  const auto surface = [](auto field) {
-    return [field](const RunReport& r) { return r.surface ? static_cast<double>((*r.surface).*field) : kNaN; };
-  };
-  const auto volume = [](auto field) {
-    return [field](const RunReport& r) { return r.volume ? static_cast<double>((*r.volume).*field) : kNaN; };
-  };
-  const auto distance = [](auto which, auto part) {
-    return [which, part](const RunReport& r) { return worst_distance(r, which, part); };
-  };
-  add("triangles", "triangles", "%.0f", Better::neither, surface(&SurfaceCheck::triangles));
-  add("tets", "tetrahedra", "%.0f", Better::neither, volume(&VolumeCheck::tets));
-  add("open_edges", "open edges", "%.0f", Better::less, surface(&SurfaceCheck::open_edges));
-  add("self_intersections", "self-intersections", "%.0f", Better::less, surface(&SurfaceCheck::self_intersections));
-  add("inverted", "inverted tetrahedra", "%.0f", Better::less, volume(&VolumeCheck::inverted));
-  add("components", "components (surface)", "%.0f", Better::neither, [](const RunReport& r) {
+    rows_.push_back(std::move(row));
+  }
+
+  std::vector<ComparisonRow> take() { return std::move(rows_); }
+
+ private:
+  const std::vector<RunReport>& reports_;
+  std::vector<ComparisonRow> rows_;
+};
+
+template <class Field>
+auto surface_figure(Field field) {
+  return [field](const RunReport& r) { return r.surface ? static_cast<double>((*r.surface).*field) : kNaN; };
+}
+
+template <class Field>
+auto volume_figure(Field field) {
+  return [field](const RunReport& r) { return r.volume ? static_cast<double>((*r.volume).*field) : kNaN; };
+}
+
+template <class Which, class Part>
+auto distance_figure(Which which, Part part) {
+  return [which, part](const RunReport& r) { return worst_distance(r, which, part); };
+}
+
+void add_sizes_and_validity(Rows& rows) {
+  rows.add("triangles", "triangles", "%.0f", Better::neither, surface_figure(&SurfaceCheck::triangles));
+  rows.add("tets", "tetrahedra", "%.0f", Better::neither, volume_figure(&VolumeCheck::tets));
+  rows.add("open_edges", "open edges", "%.0f", Better::less, surface_figure(&SurfaceCheck::open_edges));
+  rows.add("self_intersections", "self-intersections", "%.0f", Better::less,
+           surface_figure(&SurfaceCheck::self_intersections));
+  rows.add("inverted", "inverted tetrahedra", "%.0f", Better::less, volume_figure(&VolumeCheck::inverted));
+}
+
+void add_likeness(Rows& rows) {
+  rows.add("components", "components (surface)", "%.0f", Better::neither, [](const RunReport& r) {
     double n = 0;
     for (const LabelReport& l : r.labels) n += l.components;
     return n;
   });
-  add("volume_error_percent", "volume error %", "%+.2f", Better::less, [](const RunReport& r) {
+  rows.add("volume_error_percent", "volume error %", "%+.2f", Better::less, [](const RunReport& r) {
     double input = 0, mesh = 0;
     for (const LabelReport& l : r.labels)
       if (l.input_volume_mm3) input += *l.input_volume_mm3, mesh += l.surface_volume_mm3;
     return input > 0 ? 100 * (mesh / input - 1) : kNaN;
   });
-  add("dice_min", "least Dice", "%.4f", Better::more, [](const RunReport& r) {
+  rows.add("dice_min", "least Dice", "%.4f", Better::more, [](const RunReport& r) {
     double least = kNaN;
     for (const LabelReport& l : r.labels)
       if (l.dice && !std::isnan(*l.dice)) least = std::isnan(least) ? *l.dice : std::min(least, *l.dice);
     return least;
   });
-  add("wrong_centres_percent", "voxel centres wrong, %", "%.2f", Better::less, [](const RunReport& r) {
+  rows.add("wrong_centres_percent", "voxel centres wrong, %", "%.2f", Better::less, [](const RunReport& r) {
     double worst = kNaN;
     for (const LabelReport& l : r.labels)
       if (l.wrong_centres_share && !std::isnan(*l.wrong_centres_share))
         worst = std::isnan(worst) ? 100 * *l.wrong_centres_share : std::max(worst, 100 * *l.wrong_centres_share);
     return worst;
   });
-  add("band_mean_mm", "outside the band, mean mm", "%.4f", Better::less,
-      distance(&LabelReport::band_distance_mm, &BandDistance::mean));
-  add("band_max_mm", "outside the band, largest mm", "%.3f", Better::less,
-      distance(&LabelReport::band_distance_mm, &BandDistance::max));
-  add("mean_bend_deg", "mean bend, degrees", "%.1f", Better::neither,
-      [](const RunReport& r) { return r.bends ? r.bends->mean_deg : kNaN; });
-  add("bends_above_40_percent", "edges that bend above 40 degrees, %", "%.2f", Better::less,
-      [](const RunReport& r) { return r.bends ? 100 * r.bends->above_40_share : kNaN; });
-  add("distance_mean_mm", "labels to mesh, mean mm", "%.3f", Better::neither,
-      distance(&LabelReport::distance_mm, &Distance::mean));
-  add("distance_p95_mm", "labels to mesh, 95 % mm", "%.3f", Better::neither,
-      distance(&LabelReport::distance_mm, &Distance::p95));
-  add("distance_max_mm", "labels to mesh, largest mm", "%.3f", Better::neither,
-      distance(&LabelReport::distance_mm, &Distance::max));
-  add("reverse_mean_mm", "mesh to labels, mean mm", "%.3f", Better::neither,
-      distance(&LabelReport::reverse_distance_mm, &Distance::mean));
-  add("reverse_p95_mm", "mesh to labels, 95 % mm", "%.3f", Better::neither,
-      distance(&LabelReport::reverse_distance_mm, &Distance::p95));
-  add("reverse_max_mm", "mesh to labels, largest mm", "%.3f", Better::neither,
-      distance(&LabelReport::reverse_distance_mm, &Distance::max));
-  add("angle_min_deg", "smallest angle", "%.2f", Better::more, surface(&SurfaceCheck::angle_min_deg));
-  add("angle_median_deg", "median of smallest angles", "%.2f", Better::more, surface(&SurfaceCheck::angle_median_deg));
-  add("dihedral_min_deg", "smallest dihedral", "%.2f", Better::more, volume(&VolumeCheck::dihedral_min_deg));
-  add("dihedral_max_deg", "largest dihedral", "%.2f", Better::less, volume(&VolumeCheck::dihedral_max_deg));
-  add("scaled_jacobian_min", "least scaled Jacobian", "%.3f", Better::more, volume(&VolumeCheck::scaled_jacobian_min));
+}
+
+void add_distances_and_bends(Rows& rows) {
+  rows.add("band_mean_mm", "outside the band, mean mm", "%.4f", Better::less,
+           distance_figure(&LabelReport::band_distance_mm, &BandDistance::mean));
+  rows.add("band_max_mm", "outside the band, largest mm", "%.3f", Better::less,
+           distance_figure(&LabelReport::band_distance_mm, &BandDistance::max));
+  rows.add("mean_bend_deg", "mean bend, degrees", "%.1f", Better::neither,
+           [](const RunReport& r) { return r.bends ? r.bends->mean_deg : kNaN; });
+  rows.add("bends_above_40_percent", "edges that bend above 40 degrees, %", "%.2f", Better::less,
+           [](const RunReport& r) { return r.bends ? 100 * r.bends->above_40_share : kNaN; });
+  rows.add("distance_mean_mm", "labels to mesh, mean mm", "%.3f", Better::neither,
+           distance_figure(&LabelReport::distance_mm, &Distance::mean));
+  rows.add("distance_p95_mm", "labels to mesh, 95 % mm", "%.3f", Better::neither,
+           distance_figure(&LabelReport::distance_mm, &Distance::p95));
+  rows.add("distance_max_mm", "labels to mesh, largest mm", "%.3f", Better::neither,
+           distance_figure(&LabelReport::distance_mm, &Distance::max));
+  rows.add("reverse_mean_mm", "mesh to labels, mean mm", "%.3f", Better::neither,
+           distance_figure(&LabelReport::reverse_distance_mm, &Distance::mean));
+  rows.add("reverse_p95_mm", "mesh to labels, 95 % mm", "%.3f", Better::neither,
+           distance_figure(&LabelReport::reverse_distance_mm, &Distance::p95));
+  rows.add("reverse_max_mm", "mesh to labels, largest mm", "%.3f", Better::neither,
+           distance_figure(&LabelReport::reverse_distance_mm, &Distance::max));
+}
+
+void add_quality(Rows& rows) {
+  rows.add("angle_min_deg", "smallest angle", "%.2f", Better::more, surface_figure(&SurfaceCheck::angle_min_deg));
+  rows.add("angle_median_deg", "median of smallest angles", "%.2f", Better::more,
+           surface_figure(&SurfaceCheck::angle_median_deg));
+  rows.add("dihedral_min_deg", "smallest dihedral", "%.2f", Better::more,
+           volume_figure(&VolumeCheck::dihedral_min_deg));
+  rows.add("dihedral_max_deg", "largest dihedral", "%.2f", Better::less, volume_figure(&VolumeCheck::dihedral_max_deg));
+  rows.add("scaled_jacobian_min", "least scaled Jacobian", "%.3f", Better::more,
+           volume_figure(&VolumeCheck::scaled_jacobian_min));
+}
+
+}  // namespace
+
+std::vector<ComparisonRow> compare(const std::vector<RunReport>& reports) {
+  Rows table(reports);
+  add_sizes_and_validity(table);
+  add_likeness(table);
+  add_distances_and_bends(table);
+  add_quality(table);
+  std::vector<ComparisonRow> rows = table.take();
   // What was measured of no mesh is no row.
   rows.erase(std::remove_if(rows.begin(), rows.end(),
                             [](const ComparisonRow& r) {

@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <unordered_map>
 
 #include "base/parallel.h"
+#include "report/decimate.h"
+#include "report/join_cells.h"
 #include "report/packed.h"
 #include "report/shape.h"
 
 namespace stackmesh {
 namespace {
 
-using GridCell = std::array<std::uint16_t, 3>;
+constexpr std::size_t kMostDecimated = 2000000;  // triangles; above, decimation would take minutes
 
 GridCell on_grid(const Vec3& p, const DisplayGrid& grid) {
   const auto at = [&](double x, double origin) {
@@ -63,98 +63,21 @@ std::uint8_t angle_step(double degrees) {
   return static_cast<std::uint8_t>(std::clamp(std::lround(4 * degrees), 0L, 255L));
 }
 
-struct DrawnTriangle {
-  std::array<std::int32_t, 3> v;
-  std::int32_t below, above;
-  std::uint8_t angle;
-  TriangleValues values;
-};
-
-/// Vertices to draw, and triangles between them.
-struct Drawn {
-  std::vector<GridCell> points;
-  std::vector<float> distances_mm;
-  std::vector<DrawnTriangle> triangles;
-};
-
-/// Joins the vertices of each cell that bound the same labels.
-Drawn joined(const Drawn& fine, double cell_units) {
-  // A vertex's labels as the number of their set.
-  std::vector<std::int32_t> set_of(fine.points.size(), 0);
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> extended;  // (set, label) -> set
-  std::vector<std::vector<std::int32_t>> sets = {{}};
-  std::map<std::vector<std::int32_t>, std::int32_t> known = {{{}, 0}};
-  for (const DrawnTriangle& t : fine.triangles)
-    for (const std::int32_t v : t.v)
-      for (const std::int32_t label : {t.below, t.above}) {
-        const auto [it, fresh] = extended.emplace(std::pair(set_of[v], label), 0);
-        if (fresh) {
-          std::vector<std::int32_t> larger = sets[set_of[v]];
-          const auto at = std::lower_bound(larger.begin(), larger.end(), label);
-          if (at == larger.end() || *at != label) larger.insert(at, label);
-          const auto [found, is_new] = known.emplace(larger, static_cast<std::int32_t>(sets.size()));
-          if (is_new) sets.push_back(larger);
-          it->second = found->second;
-        }
-        set_of[v] = it->second;
-      }
-  struct Key {
-    std::int32_t x, y, z, set;
-    bool operator==(const Key& o) const { return x == o.x && y == o.y && z == o.z && set == o.set; }
-  };
-  struct Hash {
-    std::size_t operator()(const Key& k) const {
-      std::uint64_t h = 1469598103934665603u;
-      for (const std::int32_t part : {k.x, k.y, k.z, k.set})
-        h = (h ^ static_cast<std::uint32_t>(part)) * 1099511628211u;
-      return h ^ h >> 29;
-    }
-  };
-  std::unordered_map<Key, std::int32_t, Hash> clusters;
-  std::vector<std::int32_t> cluster_of(fine.points.size(), -1);
-  std::vector<std::array<double, 4>> sums;
-  Drawn coarse;
-  for (std::size_t v = 0; v < fine.points.size(); ++v) {
-    if (set_of[v] == 0) continue;  // of no triangle
+/// Joins cells, larger and larger ones, until no more triangles are left than wanted.
+DrawnSurface joined(const DrawnSurface& fine, const DisplayGrid& grid, std::size_t most, double& cell_mm) {
+  // A cell about as wide as the edges of a surface of that many triangles.
+  const auto at = [&](std::int32_t v) {
     const GridCell& p = fine.points[v];
-    const Key key = {static_cast<std::int32_t>(p[0] / cell_units), static_cast<std::int32_t>(p[1] / cell_units),
-                     static_cast<std::int32_t>(p[2] / cell_units), set_of[v]};
-    const std::int32_t c = clusters.emplace(key, static_cast<std::int32_t>(sums.size())).first->second;
-    if (c == static_cast<std::int32_t>(sums.size())) {
-      sums.push_back({0, 0, 0, 0});
-      if (!fine.distances_mm.empty()) coarse.distances_mm.push_back(0);
-    }
-    cluster_of[v] = c;
-    for (int k = 0; k < 3; ++k) sums[c][k] += p[k];
-    sums[c][3] += 1;
-    if (!fine.distances_mm.empty()) coarse.distances_mm[c] = std::max(coarse.distances_mm[c], fine.distances_mm[v]);
-  }
-  for (const auto& s : sums)
-    coarse.points.push_back({static_cast<std::uint16_t>(std::lround(s[0] / s[3])),
-                             static_cast<std::uint16_t>(std::lround(s[1] / s[3])),
-                             static_cast<std::uint16_t>(std::lround(s[2] / s[3]))});
-  // Triangles that fall on each other become one; it keeps the smallest angle of those it stands for.
-  struct Corner {
-    std::array<std::int32_t, 3> sorted;
-    std::int32_t triangle;
+    return Vec3{grid.unit_mm * p[0], grid.unit_mm * p[1], grid.unit_mm * p[2]};
   };
-  std::vector<Corner> corners;
-  for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
-    std::array<std::int32_t, 3> c = {cluster_of[fine.triangles[t].v[0]], cluster_of[fine.triangles[t].v[1]],
-                                     cluster_of[fine.triangles[t].v[2]]};
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
-    std::sort(c.begin(), c.end());
-    corners.push_back({c, static_cast<std::int32_t>(t)});
-  }
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.triangle < b.triangle;
-  });
-  for (std::size_t i = 0, j; i < corners.size(); i = j) {
-    DrawnTriangle t = fine.triangles[corners[i].triangle];
-    for (std::int32_t& v : t.v) v = cluster_of[v];
-    for (j = i; j < corners.size() && corners[j].sorted == corners[i].sorted; ++j)
-      t.angle = std::min(t.angle, fine.triangles[corners[j].triangle].angle);
-    coarse.triangles.push_back(t);
+  double area2 = 0;
+  for (const DrawnTriangle& t : fine.triangles) area2 += norm(cross(at(t.v[1]) - at(t.v[0]), at(t.v[2]) - at(t.v[0])));
+  const auto goal = static_cast<double>(std::max<std::size_t>(1, most));
+  cell_mm = std::max(grid.unit_mm, std::sqrt(area2 / goal));
+  DrawnSurface coarse = join_cells(fine, cell_mm / grid.unit_mm);
+  while (coarse.triangles.size() > most) {
+    cell_mm *= std::clamp(std::sqrt(static_cast<double>(coarse.triangles.size()) / goal), 1.1, 2.0);
+    coarse = join_cells(fine, cell_mm / grid.unit_mm);
   }
   return coarse;
 }
@@ -178,7 +101,7 @@ DisplayGrid grid_over(const std::vector<Vec3>& points) {
 PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm,
                         const DisplayGrid& grid, const LabelIndex& index, std::size_t most,
                         const std::vector<TriangleValues>& values) {
-  Drawn drawn;
+  DrawnSurface drawn;
   drawn.distances_mm = distances_mm;
   for (const Vec3& p : complex.points) drawn.points.push_back(on_grid(p, grid));
   drawn.triangles.reserve(complex.triangles.size());
@@ -190,23 +113,9 @@ PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float
                                values.empty() ? TriangleValues{} : values[i]});
   }
   PackedMesh packed;
-  if (drawn.triangles.size() > most) {
-    // A cell about as wide as the edges of a surface of that many triangles.
-    double area2 = 0;
-    for (const InterfaceTriangle& t : complex.triangles)
-      area2 +=
-          norm(cross(complex.points[t.v[1]] - complex.points[t.v[0]], complex.points[t.v[2]] - complex.points[t.v[0]]));
-    double cell_mm = std::max(grid.unit_mm, std::sqrt(area2 / static_cast<double>(std::max<std::size_t>(1, most))));
-    Drawn coarse = joined(drawn, cell_mm / grid.unit_mm);
-    while (coarse.triangles.size() > most) {
-      cell_mm *= std::clamp(
-          std::sqrt(static_cast<double>(coarse.triangles.size()) / static_cast<double>(std::max<std::size_t>(1, most))),
-          1.1, 2.0);
-      coarse = joined(drawn, cell_mm / grid.unit_mm);
-    }
-    packed.cell_mm = cell_mm;
-    drawn = std::move(coarse);
-  }
+  if (drawn.triangles.size() > most && drawn.triangles.size() <= kMostDecimated)
+    drawn = decimated(drawn, complex.points, most);
+  if (drawn.triangles.size() > most) drawn = joined(drawn, grid, most, packed.cell_mm);
 
   const std::vector<std::int32_t> order = curve_order(drawn.points), place = inverse(order);
   for (DrawnTriangle& t : drawn.triangles) {

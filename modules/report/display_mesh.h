@@ -28,7 +28,8 @@ struct PackedMesh {
 };
 
 /// The surface: positions, triangles, the two labels and smallest angle of each, the distance of each vertex (if
-/// any are given: one per point of the complex). Above `most` triangles the vertices of a cell that bound the same
+/// any are given: one per point of the complex). Above `most` triangles it is decimated
+/// (report/decimate.h), or, where that is not enough or would take too long, the vertices of a cell that bound the same
 /// labels are joined; what is kept of each are the largest distance and the smallest angle. `values` of a solver model
 /// are one per triangle, or none.
 PackedMesh pack_surface(const InterfaceComplex& complex, const std::vector<float>& distances_mm,

@@ -3,6 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "report/html_text.h"
 #include "report/page_files.h"
 #include "report/page_text.h"
 

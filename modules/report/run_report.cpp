@@ -219,10 +219,8 @@ const char* model_name(MaterialKind kind) {
   return "";
 }
 
-Json fem(const FemReport& f) {
-  Json sets = Json::array(), pairs = Json::array(), materials = Json::array(), skins = Json::array();
-  for (const FemSet& s : f.sets)
-    sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
+Json pairs_of(const FemReport& f) {
+  Json pairs = Json::array();
   for (const SurfacePair& p : f.pairs) {
     Json row = {{"name", p.name},
                 {"primary", p.primary},
@@ -238,6 +236,11 @@ Json fem(const FemReport& f) {
     }
     pairs.push_back(row);
   }
+  return pairs;
+}
+
+Json materials_of(const FemReport& f) {
+  Json materials = Json::array();
   for (const MaterialRow& m : f.materials)
     materials.push_back({{"label", m.label},
                          {"name", m.name},
@@ -254,13 +257,11 @@ Json fem(const FemReport& f) {
                          {"materials", m.materials},
                          {"bin_error_max_rel", m.bin_error_rel},
                          {"voxels", m.voxels}});
-  Json steps = Json::array(), bodies = Json::array();
-  for (const Body& b : f.bodies)
-    bodies.push_back({{"label", b.label},
-                      {"name", b.name},
-                      {"elements", b.tets},
-                      {"volume_mm3", b.volume_mm3},
-                      {"centre_mm", {b.centre.x, b.centre.y, b.centre.z}}});
+  return materials;
+}
+
+Json steps_of(const FemReport& f) {
+  Json steps = Json::array();
   for (const FemStep& s : f.steps)
     steps.push_back({{"name", s.name},
                      {"type", s.frequency ? "frequency" : "static"},
@@ -270,33 +271,40 @@ Json fem(const FemReport& f) {
                      {"pressures", s.pressures},
                      {"force_n", {s.force_n.x, s.force_n.y, s.force_n.z}},
                      {"gravity_mm_s2", {s.gravity_mm_s2.x, s.gravity_mm_s2.y, s.gravity_mm_s2.z}}});
+  return steps;
+}
+
+Json accuracy_of(const FemAccuracy& a) {
+  const Accuracy& e = a.estimate;
+  Json rows = Json::array();
+  for (const SetAccuracy& s : e.sets)
+    rows.push_back({{"set", s.set},
+                    {"mises_rms_mpa", s.mises_rms_mpa},
+                    {"mises_max_mpa", s.mises_max_mpa},
+                    {"displacement_max_mm", s.displacement_max_mm},
+                    {"mises_extrapolated_mpa", s.mises_extrapolated_mpa},
+                    {"order", s.order},
+                    {"error_rel", s.error_rel},
+                    {"displacement_error_rel", s.displacement_error_rel},
+                    {"zz_rel", s.zz_rel},
+                    {"held", s.held}});
+  return {{"asked_rel", a.asked_rel}, {"reached", a.reached}, {"error_rel", e.error_rel}, {"worst_set", e.worst_set},
+          {"elements", a.elements},   {"solve_s", a.solve_s}, {"zz_rel", e.zz_rel},       {"sets", rows}};
+}
+
+Json fem(const FemReport& f) {
+  Json sets = Json::array(), skins = Json::array(), bodies = Json::array();
+  for (const FemSet& s : f.sets)
+    sets.push_back({{"name", s.name}, {"what", s.note}, {"nodes", s.nodes}, {"faces", s.faces}});
+  for (const Body& b : f.bodies)
+    bodies.push_back({{"label", b.label},
+                      {"name", b.name},
+                      {"elements", b.tets},
+                      {"volume_mm3", b.volume_mm3},
+                      {"centre_mm", {b.centre.x, b.centre.y, b.centre.z}}});
   for (const auto& [name, thickness] : f.skins) skins.push_back({{"name", name}, {"thickness_mm", thickness}});
-  Json accuracy = nullptr;
-  if (f.accuracy) {
-    const Accuracy& e = f.accuracy->estimate;
-    Json rows = Json::array();
-    for (const SetAccuracy& s : e.sets)
-      rows.push_back({{"set", s.set},
-                      {"mises_rms_mpa", s.mises_rms_mpa},
-                      {"mises_max_mpa", s.mises_max_mpa},
-                      {"displacement_max_mm", s.displacement_max_mm},
-                      {"mises_extrapolated_mpa", s.mises_extrapolated_mpa},
-                      {"order", s.order},
-                      {"error_rel", s.error_rel},
-                      {"displacement_error_rel", s.displacement_error_rel},
-                      {"zz_rel", s.zz_rel},
-                      {"held", s.held}});
-    accuracy = {{"asked_rel", f.accuracy->asked_rel},
-                {"reached", f.accuracy->reached},
-                {"error_rel", e.error_rel},
-                {"worst_set", e.worst_set},
-                {"elements", f.accuracy->elements},
-                {"solve_s", f.accuracy->solve_s},
-                {"zz_rel", e.zz_rel},
-                {"sets", rows}};
-  }
   return {{"order", f.order},
-          {"accuracy", accuracy},
+          {"accuracy", f.accuracy ? accuracy_of(*f.accuracy) : Json(nullptr)},
           {"nodes", f.nodes},
           {"elements", f.elements},
           {"wedges", f.wedges},
@@ -306,20 +314,16 @@ Json fem(const FemReport& f) {
           {"materials_path", f.materials_path.empty() ? Json(nullptr) : Json(f.materials_path)},
           {"placeholder_materials", f.placeholder_materials},
           {"sets", sets},
-          {"pairs", pairs},
-          {"materials", materials},
+          {"pairs", pairs_of(f)},
+          {"materials", materials_of(f)},
           {"skins", skins},
           {"bodies", bodies},
           {"load_case",
            {{"supports", f.supports},
             {"loaded_nodes", f.loaded_nodes},
             {"force_n", {f.force_n.x, f.force_n.y, f.force_n.z}},
-            {"steps", steps}}}};
+            {"steps", steps_of(f)}}}};
 }
-
-}  // namespace
-
-namespace {
 
 Json describe(const RunReport& r) {
   Json options = Json::object();
@@ -381,10 +385,6 @@ Json describe(const RunReport& r) {
 std::string text_of(const Json& j) {
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
-
-}  // namespace
-
-namespace {
 
 double number_of(double value) {
   return value;

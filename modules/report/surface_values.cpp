@@ -26,6 +26,45 @@ std::uint8_t step(double share) {
   return static_cast<std::uint8_t>(1 + std::lround(254 * std::clamp(share, 0.0, 1.0)));
 }
 
+/// Of each element, MPa; empty where the materials only hold the place.
+std::vector<double> moduli_of(const SolverModel& model) {
+  const SolverSets& sets = model.sets;
+  std::vector<double> modulus = sets.modulus_mpa;
+  if (modulus.empty() && !sets.placeholder_materials) {
+    modulus.assign(model.mesh.elements(), 0);
+    for (const ElementMaterial& m : sets.materials)
+      for (const std::int32_t t : m.tets) modulus[t] = m.young_mpa;
+  }
+  return modulus;
+}
+
+/// The stress that 99.5 % of the nodes keep below: a few nodes at the end of a support must not make the rest pale.
+double high_stress(const std::vector<double>& mises_mpa) {
+  std::vector<double> order = mises_mpa;
+  const auto at = order.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.995 * static_cast<double>(order.size()))) - 1;
+  std::nth_element(order.begin(), at, order.end());
+  return *at;
+}
+
+/// The sets of faces, the largest first, at most 250.
+std::vector<const FaceSet*> by_falling_size(const SolverSets& sets) {
+  std::vector<const FaceSet*> by_size;
+  for (const FaceSet& s : sets.surfaces) by_size.push_back(&s);
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [](const FaceSet* a, const FaceSet* b) { return a->faces.size() > b->faces.size(); });
+  if (by_size.size() > 250) by_size.erase(by_size.begin(), by_size.end() - 250);
+  return by_size;
+}
+
+std::array<std::int32_t, 3> corner_nodes(const TetMesh& mesh, TetFace f) {
+  const auto element = static_cast<std::size_t>(f.tet);
+  std::array<std::int32_t, 3> nodes;
+  for (int k = 0; k < 3; ++k)
+    nodes[k] = mesh.is_wedge(element) ? mesh.wedges[element - mesh.tets.size()][kWedgeFaces[f.face][k]]
+                                      : mesh.tets[element][kTetFaces[f.face][k]];
+  return nodes;
+}
+
 }  // namespace
 
 SurfaceValues surface_values(const SolverModel& model, const std::vector<double>& mises_mpa) {
@@ -44,45 +83,22 @@ SurfaceValues surface_values(const SolverModel& model, const std::vector<double>
     if (held.count(n.name) > 0)
       for (const std::int32_t v : n.nodes) kept[v] = 1;
 
-  std::vector<double> modulus = sets.modulus_mpa;
-  if (modulus.empty() && !sets.placeholder_materials) {
-    modulus.assign(model.mesh.elements(), 0);
-    for (const ElementMaterial& m : sets.materials)
-      for (const std::int32_t t : m.tets) modulus[t] = m.young_mpa;
-  }
+  const std::vector<double> modulus = moduli_of(model);
   for (const double e : modulus)
     if (e > 0) {
       out.modulus_low_mpa = out.modulus_low_mpa > 0 ? std::min(out.modulus_low_mpa, e) : e;
       out.modulus_high_mpa = std::max(out.modulus_high_mpa, e);
     }
-  if (!mises_mpa.empty()) {  // a few nodes at the end of a support must not make the rest pale
-    std::vector<double> order = mises_mpa;
-    const auto at =
-        order.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.995 * static_cast<double>(order.size()))) - 1;
-    std::nth_element(order.begin(), at, order.end());
-    out.mises_high_mpa = *at;
-  }
+  if (!mises_mpa.empty()) out.mises_high_mpa = high_stress(mises_mpa);
 
   // A face shows the smallest set that it is in: the larger ones are seen around it.
-  std::vector<const FaceSet*> by_size;
-  for (const FaceSet& s : sets.surfaces) by_size.push_back(&s);
-  std::stable_sort(by_size.begin(), by_size.end(),
-                   [](const FaceSet* a, const FaceSet* b) { return a->faces.size() > b->faces.size(); });
-  if (by_size.size() > 250) by_size.erase(by_size.begin(), by_size.end() - 250);
   std::map<Key, std::size_t> place;
-  for (const FaceSet* s : by_size) {
+  for (const FaceSet* s : by_falling_size(sets)) {
     out.sets.push_back(s->name);
     for (const TetFace f : s->faces) {
-      std::array<Vec3, 3> corners;
-      std::array<std::int32_t, 3> nodes;
-      for (int k = 0; k < 3; ++k) {
-        const auto element = static_cast<std::size_t>(f.tet);
-        nodes[k] = model.mesh.is_wedge(element)
-                       ? model.mesh.wedges[element - model.mesh.tets.size()][kWedgeFaces[f.face][k]]
-                       : model.mesh.tets[element][kTetFaces[f.face][k]];
-        corners[k] = model.mesh.points[nodes[k]];
-      }
-      corners = sorted(corners);
+      const std::array<std::int32_t, 3> nodes = corner_nodes(model.mesh, f);
+      const std::array<Vec3, 3> corners =
+          sorted({model.mesh.points[nodes[0]], model.mesh.points[nodes[1]], model.mesh.points[nodes[2]]});
       const auto [at, fresh] = place.insert({key(corners), out.values.size()});
       if (fresh) {
         out.corners.push_back(corners);

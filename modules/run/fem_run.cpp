@@ -4,8 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <set>
 
 #include "base/cancel.h"
 #include "base/error.h"
@@ -20,22 +18,19 @@
 #include "fem/recover_stress.h"
 #include "fem/selection.h"
 #include "fem/solver_names.h"
-#include "fem/split_parts.h"
 #include "image/read_image.h"
-#include "image/read_label_table.h"
 #include "mesh/voids.h"
-#include "meshio/read_frd.h"
 #include "meshio/read_mesh.h"
 #include "model/label_table.h"
 #include "model/space.h"
 #include "report/html_report.h"
-#include "run/complete_report.h"
+#include "run/fem_summary.h"
+#include "run/given_mesh.h"
 #include "run/mesh_product.h"
 #include "run/output_files.h"
 #include "run/provenance.h"
 #include "run/report_names.h"
 #include "run/solve_with_calculix.h"
-#include "validate/check_volume.h"
 #include "volume/raise_order.h"
 #include "volume/refine_tets.h"
 
@@ -116,12 +111,13 @@ class FemRun {
     report.options = o_.mesh.option_texts;
     report.warnings = o_.mesh.notes;
     check_outputs();
+    GivenMesh given(o_);
     MeshProduct product;
-    clock.run("read", [&] { product = read(path, report); });
+    clock.run("read", [&] { product = given.read(path, report); });
     check_labels(product.labels);
-    clock.run("validate", [&] { check(product, report); });
-    const std::vector<Label> behind = voids_behind(product.mesh.faces);
-    change_space(product.mesh, written_);  // it was read and judged in LPS
+    clock.run("validate", [&] { given.check(product, report); });
+    const std::vector<Label> behind = given.voids_behind(product.mesh.faces);
+    change_space(product.mesh, given.written());  // it was read and judged in LPS
     if (o_.mesh.mesh.order == 2 && product.mesh.mid.empty()) {
       OrderOptions order;
       order.threads = o_.mesh.mesh.threads;
@@ -135,7 +131,7 @@ class FemRun {
       clock.run("volume", [&] { product.mesh = refine_tets(std::move(product.mesh), o_.mesh.mesh.refine); });
     }
     name_voids(product.mesh.faces, behind);
-    product.labels.insert(product.labels.end(), voids_.begin(), voids_.end());
+    product.labels.insert(product.labels.end(), given.voids().begin(), given.voids().end());
     const bool html = asks_for_html(o_.mesh.reports);
     HtmlPictures pictures;
     clock.run("write", [&] {
@@ -171,137 +167,6 @@ class FemRun {
       fail_usage("unknown space '" + o_.mesh.space + "'", "--space", "choose lps or ras");
   }
 
-  MeshProduct read(const std::string& path, RunReport& report) {
-    MeshReadOptions how;
-    how.label_array = o_.label_array;
-    MeshFile file = read_mesh(path, how);
-    if (file.tets.empty()) fail_input("the mesh has no tetrahedra", path, "give a volume mesh, or labels");
-    report.input.path = path;
-    report.input.kind = "mesh";
-    for (const std::string& note : file.notes) report.warnings.push_back({WarningCode::mesh_converted, path, note});
-    if (file.label_source == LabelSource::none)
-      report.warnings.push_back(
-          warning_at(WarningCode::labels_matched, path,
-                     "no cell array holds labels: every element has label 1 (name an array with --label-array)"));
-    if (!file.space)
-      report.warnings.push_back(warning_at(WarningCode::frame, path, "does not say its frame; it is taken as LPS"));
-    MeshProduct product;
-    product.mesh = take_elements(file);
-    product.mesh.space = file.space.value_or(Space::lps);
-    written_ = product.mesh.space == Space::none ? Space::none : o_.mesh.space == "ras" ? Space::ras : Space::lps;
-    report.input.space = to_text(written_);
-    product.up = o_.up;
-    if (product.mesh.space == Space::ras) change_space(product.mesh, Space::lps);  // and back again
-    if (!product.mesh.wedges.empty() && (o_.mesh.mesh.refine > 0 || o_.accuracy_rel))
-      fail_usage("the mesh has wedges, and only tetrahedra are cut into eight", path,
-                 o_.mesh.mesh.refine > 0 ? "leave --refine out" : "leave --accuracy out");
-    const std::set<Label> present(product.mesh.labels.begin(), product.mesh.labels.end());
-    for (const Label l : present) {
-      if (l <= 0)
-        fail_input("a label of the mesh is not above 0", path + ", label " + std::to_string(l),
-                   "number labels from 1; 0 is the background");
-      product.labels.push_back({l, ""});
-      for (const LabelInfo& named : file.names)
-        if (named.number == l) product.labels.back() = named;
-    }
-    for (std::size_t t = 0; t < file.behind.size(); ++t)
-      if (file.behind[t] != 0) walls_[sorted(file.triangles[t].v)] = file.behind[t];
-    for (const LabelInfo& named : file.names)
-      if (std::find(file.behind.begin(), file.behind.end(), named.number) != file.behind.end()) voids_.push_back(named);
-    if (!o_.mesh.input.names.empty()) {
-      const std::vector<LabelInfo> table = read_label_table(o_.mesh.input.names);
-      apply_label_table(table, product.labels);
-      apply_label_table(table, voids_);
-    }
-    keep_labels(product);
-    return product;
-  }
-
-  static std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> v) {
-    std::sort(v.begin(), v.end());
-    return v;
-  }
-  /// The void behind each face, as the file tells.
-  std::vector<Label> voids_behind(const std::vector<InterfaceTriangle>& faces) const {
-    std::vector<Label> behind(walls_.empty() ? 0 : faces.size(), 0);
-    for (std::size_t i = 0; i < behind.size(); ++i)
-      if (const auto at = walls_.find(sorted(faces[i].v));
-          at != walls_.end() && (faces[i].below == 0 || faces[i].above == 0))
-        behind[i] = at->second;
-    return behind;
-  }
-
-  /// --label and --merge.
-  void keep_labels(MeshProduct& product) const {
-    if (o_.mesh.input.labels.empty() && !o_.mesh.input.merge) return;
-    std::set<Label> keep;
-    std::vector<LabelInfo> kept;
-    for (const std::size_t k : LabelTable(product.labels).resolve(o_.mesh.input.labels)) {
-      keep.insert(product.labels[k].number);
-      if (kept.empty() || !o_.mesh.input.merge) kept.push_back(product.labels[k]);
-    }
-    relabel(product.mesh, [&](Label l) { return keep.count(l) == 0 ? 0 : o_.mesh.input.merge ? kept[0].number : l; });
-    product.labels = std::move(kept);
-  }
-
-  void check(MeshProduct& product, RunReport& report) {
-    TetMesh& mesh = product.mesh;
-    const ElementQuality quality = element_quality(mesh);
-    if (!quality.non_positive.empty()) {
-      std::string list;
-      for (std::size_t i = 0; i < std::min<std::size_t>(quality.non_positive.size(), 100); ++i)
-        list += (i > 0 ? ", " : "") + std::to_string(quality.non_positive[i] + 1);
-      if (quality.non_positive.size() > 100) list += ", ...";
-      fail_input(std::to_string(quality.non_positive.size()) + " of " + std::to_string(mesh.elements()) +
-                     " elements have a Jacobian that is not positive",
-                 report.input.path + ", elements " + list,
-                 "mesh it again, or turn the elements round where their nodes are in the wrong order");
-    }
-    if (o_.mesh.mesh.order == 1 && !mesh.mid.empty()) {
-      mesh.mid.clear();
-      mesh.wedge_mid.clear();
-      report.warnings.push_back(
-          {WarningCode::element_order, "", "the mesh is of second order: its mid-side nodes are left out (--order 1)"});
-    }
-    add_label_rows(report, product.labels);
-    // A mesh whose parts have nodes of their own is judged as one body.
-    TetMesh whole = mesh;
-    if (const std::size_t twins = join_equal_nodes(whole); twins > 0) {
-      const std::string text = std::to_string(twins) + " nodes lie exactly on another one";
-      if (o_.parts.empty()) {
-        report.warnings.push_back({WarningCode::coincident_nodes, "",
-                                   text + " and stay apart from it; --parts makes contact or ties of such faces"});
-      } else {
-        report.warnings.push_back(
-            {WarningCode::coincident_nodes, "", text + ": they were joined to it before --parts"});
-        mesh = whole;
-        walls_.clear();  // they name the nodes before
-      }
-    }
-    mesh.faces = faces_of_tets(mesh);
-    whole.faces = faces_of_tets(whole);
-    judge(whole, report);
-    if (!report.volume->conforms)
-      report.warnings.push_back({WarningCode::not_conforming, "",
-                                 "the mesh does not conform: faces or edges of its tetrahedra do not match"});
-  }
-
-  /// Its surface only for a report.
-  void judge(const TetMesh& mesh, RunReport& report) const {
-    if (o_.mesh.reports.empty()) {
-      report.volume = check_volume(mesh, {o_.mesh.mesh.threads});
-      return;
-    }
-    const InterfaceComplex surface = {mesh.points, mesh.faces, mesh.space};
-    check_mesh(report, surface, &mesh, o_.mesh.mesh.threads);
-    Judged judged;
-    judged.surface = &surface;
-    judged.mesh = &mesh;
-    judged.threads = o_.mesh.mesh.threads;
-    complete_report(report, judged);
-    report.provenance = find_provenance({report.input.path});
-  }
-
   /// A model, and what there is to say of it.
   struct Built {
     SolverModel model;
@@ -316,12 +181,13 @@ class FemRun {
     product.mesh = TetMesh();
     const SolverModel& model = built.model;
     for (const Warning& w : built.warnings) report.warnings.push_back(w);
-    report.fem = summary(model, built.materials);
+    report.fem = summary_of(model, built.materials, o_.image, o_.materials);
     if (asks_for_html(o_.mesh.reports))
-      report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model));
+      report.fem->faces = surface_values(model, o_.result.empty() ? std::vector<double>() : mises_of(model, o_.result));
     report.fem->accuracy = std::move(accuracy);
     if (report.fem->accuracy && !report.fem->accuracy->reached)
-      report.warnings.push_back({WarningCode::accuracy, "", not_reached(*report.fem->accuracy)});
+      report.warnings.push_back({WarningCode::accuracy, "set " + report.fem->accuracy->estimate.worst_set,
+                                 not_reached(*report.fem->accuracy)});
 
     MeshWriteOptions write = o_.mesh.write;
     for (const std::string& path : o_.mesh.outputs) {
@@ -330,28 +196,6 @@ class FemRun {
         report.warnings.push_back({WarningCode::format_loss, path, loss});
       write_model(files, path, model, write);
     }
-  }
-
-  /// Von Mises stress at the model's nodes, out of a result of CalculiX for this very model.
-  std::vector<double> mises_of(const SolverModel& model) const {
-    const FrdResult result = read_frd(o_.result);
-    const auto stress = result.fields.find("STRESS");
-    if (stress == result.fields.end())
-      fail_input("the result has no stress", o_.result,
-                 "ask for it in the deck: *EL FILE and S, as decks with a load case do");
-    std::vector<double> mises(model.mesh.points.size(), 0);
-    for (std::size_t i = 0; i < result.numbers.size(); ++i) {
-      const std::int64_t node = result.numbers[i] - 1;
-      if (node < 0 || node >= static_cast<std::int64_t>(mises.size())) continue;  // of rigid points and springs
-      const Vec3 p = model.mesh.points[node];
-      if (norm(result.points[i] - p) > 1e-3 + 1e-4 * norm(p))
-        fail_input("the result is of another mesh: its node " + std::to_string(node + 1) + " lies elsewhere", o_.result,
-                   "give the result of this input with these very options");
-      const auto& s = stress->second[i];
-      const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-      mises[node] = std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-    }
-    return mises;
   }
 
   std::string not_reached(const FemAccuracy& a) const {
@@ -427,7 +271,10 @@ class FemRun {
                    "give labels that carry their place in the world");
     }
     out.materials = assign_materials(model, plan_ ? &*plan_ : nullptr, image_ ? &*image_ : nullptr);
-    for (const Warning& w : out.materials.warnings) out.warnings.push_back(w);
+    for (Warning& w : out.materials.warnings) {
+      if (w.where.empty()) w.where = o_.image;  // what is no label's is the image's
+      out.warnings.push_back(w);
+    }
     if (!plan_)
       out.warnings.push_back(
           {WarningCode::materials, "", "no --materials: decks that need materials carry placeholders (E = 1 MPa)"});
@@ -447,68 +294,11 @@ class FemRun {
     return out;
   }
 
-  FemReport summary(const SolverModel& model, const MaterialReport& materials) const {
-    FemReport f;
-    f.order = model.mesh.mid.empty() ? 1 : 2;
-    f.nodes = model.mesh.points.size();
-    f.elements = model.mesh.elements();
-    f.wedges = model.mesh.wedges.size();
-    f.image = o_.image;
-    f.materials_path = o_.materials;
-    f.placeholder_materials = model.sets.placeholder_materials;
-    for (const NodeSet& s : model.sets.node_sets) {
-      FemSet row{s.name, s.note, s.nodes.size(), 0};
-      for (const FaceSet& faces : model.sets.surfaces)
-        if (faces.name == s.name) row.faces = faces.faces.size();
-      f.sets.push_back(row);
-    }
-    f.pairs = model.sets.pairs;
-    f.materials = materials.labels;
-    for (const ShellSet& s : model.sets.shells) {
-      f.skins.push_back({s.name, s.thickness_mm});
-      f.shells += s.faces.size();
-    }
-    f.bodies = bodies_of(model);
-    for (const LoadStep& s : model.sets.steps) f.steps.push_back(summary(model, s));
-    if (!f.steps.empty()) {
-      f.supports = f.steps[0].supports;
-      f.loaded_nodes = f.steps[0].loaded_nodes;
-      f.force_n = f.steps[0].force_n;
-    }
-    return f;
-  }
-
-  static FemStep summary(const SolverModel& model, const LoadStep& s) {
-    FemStep out;
-    out.name = s.name;
-    out.frequency = s.analysis == Analysis::frequency;
-    out.large_displacements = s.large_displacements || model.sets.is_hyperelastic();
-    out.supports = s.supports.size() + s.point_supports.size();
-    std::set<std::int32_t> loaded;
-    for (const auto& [node, force] : s.forces_n) {
-      loaded.insert(node);
-      out.force_n = out.force_n + force;
-    }
-    for (const PointLoad& l : s.point_loads) out.force_n = out.force_n + l.force_n;
-    for (const Pressure& p : s.pressures) {
-      out.force_n = out.force_n + force_of(model, p);
-      for (const NodeSet& set : model.sets.node_sets)
-        if (set.name == p.set) loaded.insert(set.nodes.begin(), set.nodes.end());
-    }
-    out.loaded_nodes = loaded.size() + s.point_loads.size();
-    out.pressures = s.pressures.size();
-    out.gravity_mm_s2 = s.gravity_mm_s2;
-    return out;
-  }
-
   const FemRunOptions& o_;
   Monitor& progress_;
   std::optional<MaterialPlan> plan_;
   std::optional<IntensityVolume> image_;
-  int times_cut_ = 0;                                   // by --accuracy, beyond --refine
-  std::map<std::array<std::int32_t, 3>, Label> walls_;  // of a given mesh: its faces on voids, by their sorted corners
-  std::vector<LabelInfo> voids_;                        // that the mesh names
-  Space written_ = Space::lps;
+  int times_cut_ = 0;  // by --accuracy, beyond --refine
 };
 
 }  // namespace

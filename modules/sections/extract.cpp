@@ -4,13 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <set>
-#include <unordered_map>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "model/slices.h"
 #include "sections/arcs.h"
 #include "sections/components.h"
+#include "sections/section_edges.h"
 
 namespace stackmesh {
 namespace {
@@ -37,19 +37,9 @@ Section make_section(const SliceArcs& traced, const LabelVolume& volume, double 
   }
   Section section;
   section.z_mm = z_mm;
-  std::unordered_map<std::uint64_t, std::int32_t> ids;
-  const auto id_of = [&](GridPoint p) {
-    const std::uint64_t key =
-        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
-    const auto [it, fresh] = ids.emplace(key, static_cast<std::int32_t>(section.points.size()));
-    if (fresh) section.points.push_back(p);
-    return it->second;
-  };
-  for (std::size_t a = 0; a < traced.arcs.size(); ++a) {
-    const Label left = volume.labels[traced.arcs[a].left].number, right = volume.labels[traced.arcs[a].right].number;
-    for (std::size_t i = 0; i + 1 < kept[a].size(); ++i)
-      section.edges.push_back({id_of(kept[a][i]), id_of(kept[a][i + 1]), left, right});
-  }
+  SectionEdges edges(section);
+  for (std::size_t a = 0; a < traced.arcs.size(); ++a)
+    edges.add(kept[a], volume.labels[traced.arcs[a].left].number, volume.labels[traced.arcs[a].right].number);
   return section;
 }
 

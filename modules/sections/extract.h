@@ -15,6 +15,7 @@ constexpr std::int32_t kGridPerPixel = 1024;  ///< grid units in a pixel
 /// The stacking axis of a volume.
 enum class StackAxis { automatic, x, y, z };
 
+/// How contours are traced.
 struct ContourOptions {
   StackAxis axis = StackAxis::automatic;  ///< automatic: the coarsest spacing; z when they are equal within 1 %
   double simplify_px = 0.5;               ///< largest deviation of a simplified contour, in pixels; 0 keeps every crack
@@ -23,6 +24,7 @@ struct ContourOptions {
   int threads = 0;          ///< 0: all
 };
 
+/// The contours of all slices.
 struct ContourResult {
   Stack stack;                      ///< one section a slice, not yet noded
   int axis = 2;                     ///< stacking axis: 0 x, 1 y, 2 z

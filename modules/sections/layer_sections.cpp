@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "sections/arcs.h"
+#include "sections/section_edges.h"
 
 namespace stackmesh {
 namespace {
@@ -159,18 +160,9 @@ Section layer_section(const LabelLayer& layer, double tolerance_px) {
   Section section;
   section.z_mm = layer.z_mm;
   section.interpolated = true;
-  std::unordered_map<std::uint64_t, std::int32_t> ids;
-  const auto id_of = [&](GridPoint p) {
-    const std::uint64_t key =
-        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.x)) << 32) | static_cast<std::uint32_t>(p.y);
-    const auto [it, fresh] = ids.emplace(key, static_cast<std::int32_t>(section.points.size()));
-    if (fresh) section.points.push_back(p);
-    return it->second;
-  };
+  SectionEdges edges(section);
   for (std::size_t a = 0; a < arcs.size(); ++a)
-    for (std::size_t i = 0; i + 1 < kept[a].size(); ++i)
-      section.edges.push_back(
-          {id_of(kept[a][i]), id_of(kept[a][i + 1]), tracer.arc_labels_[a].first, tracer.arc_labels_[a].second});
+    edges.add(kept[a], tracer.arc_labels_[a].first, tracer.arc_labels_[a].second);
   return section;
 }
 

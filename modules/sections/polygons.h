@@ -10,17 +10,18 @@
 
 namespace stackmesh {
 
+/// How drawn contours become sections.
 struct ContourStackOptions {
   /// a contour stands for a slice, which reaches half a gap to either side; false: a plane cut
   bool slices = false;
-  /// contours of heights that are at most so far apart are one section; those of different
+  /// contours of heights that are at most so far apart are one section; those of different labels up to 3 % of the
+  /// smallest usual gap, too
   double same_height_mm = 1e-3;
-  ///< labels up to 3 % of the smallest usual gap, too
   /// how labels end, as it will be stitched: where other labels go on, ends are made contours
   Caps caps = Caps::automatic;
-  std::map<Label, LabelEndCaps> label_caps;
-  bool first_wins = false;       ///< where labels overlap: the one given first; false: the smaller one
-  bool report_overlaps = false;  ///< a warning says how much labels overlap, and who got it
+  std::map<Label, LabelEndCaps> label_caps;  ///< the same for some labels
+  bool first_wins = false;                   ///< where labels overlap: the one given first; false: the smaller one
+  bool report_overlaps = false;              ///< a warning says how much labels overlap, and who got it
   /// heights that a label lacks between its own get contours made from their neighbours
   bool fill_missing = false;
   bool repair = false;         ///< contours of one label that cross are united where even-odd says nearly the same

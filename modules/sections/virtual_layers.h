@@ -9,21 +9,22 @@
 
 namespace stackmesh {
 
+/// How many layers, on which raster.
 struct VirtualLayerOptions {
   std::vector<int> per_gap;                   ///< virtual layers in each gap of the stack, evenly spaced; 0: none
   std::vector<char> watch;                    ///< gaps where nesting is looked after; empty: all that get layers
   std::array<std::int32_t, 2> unit = {1, 1};  ///< pixel of the raster along x and y, in grid units, 64 or more
   double tension = 0.25;                      ///< as InterpolateOptions::tension
-  /// beyond the first and last section: layers in which all labels close at that distance
-  double low_end_mm = 0, high_end_mm = 0;
-  int end_layers = 0;  ///< how many there, if any
-  int threads = 0;     ///< 0: all
+  double low_end_mm = 0;   ///< beyond the first section: layers in which all labels close at that distance
+  double high_end_mm = 0;  ///< the same beyond the last section
+  int end_layers = 0;      ///< how many there, if any
+  int threads = 0;         ///< 0: all
 };
 
 /// A gap where labels that lie within others in both sections cannot be kept inside between them.
 struct OpenGap {
-  std::size_t gap = 0;
-  double area_mm2 = 0;
+  std::size_t gap = 0;  ///< number of the gap, from 0
+  double area_mm2 = 0;  ///< over which the wall is open
 };
 
 /// Interpolates label layers between the sections of a stack, as add_virtual_slices does between slices, but from

@@ -5,6 +5,7 @@
 
 namespace stackmesh {
 
+/// How slices are interpolated.
 struct InterpolateOptions {
   /// Virtual slices in each gap. Unset: as many as make the gap about one pixel (the smaller in-plane
   /// spacing), where it is above 1.5 pixels. 0: none.
@@ -13,6 +14,7 @@ struct InterpolateOptions {
   int threads = 0;        ///< 0: all
 };
 
+/// A volume with virtual slices.
 struct InterpolatedVolume {
   LabelVolume volume;  ///< slice k of the input is slice k * (per_gap + 1), pixel by pixel
   int per_gap = 0;     ///< virtual slices in each gap

@@ -11,6 +11,7 @@
 
 namespace stackmesh {
 
+/// How a label volume becomes sections.
 struct SectionOptions {
   ContourOptions contours;              ///< axis and threads; the rest is chosen by volume_sections
   std::optional<double> simplify_px;    ///< unset: 0.05 of faired contours, 0.5 of those along the pixels
@@ -21,10 +22,11 @@ struct SectionOptions {
   double band_px = 0.5;                 ///< fairing (FairOptions); 0: contours along the pixels
 };
 
+/// The sections of a label volume.
 struct VolumeSections {
-  ContourResult contours;
-  std::vector<Warning> warnings;
-  InterfaceComplex faired;  ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
+  ContourResult contours;         ///< the sections, and how they were traced
+  std::vector<Warning> warnings;  ///< where smooth sections keep closer to the slices
+  InterfaceComplex faired;        ///< the faired interfaces as a whole, in stack coordinates; empty without fairing
 };
 
 /// @param name what the error calls the volume @throws Error(input) for fewer than two slices along the stacking axis

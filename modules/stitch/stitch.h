@@ -11,13 +11,19 @@
 namespace stackmesh {
 
 /// How the ends of labels are closed (docs: CONTRACT, --caps).
-enum class Caps { automatic, flat, round };
+enum class Caps {
+  automatic,  ///< flat or round, by how fast a label ends
+  flat,       ///< a plane
+  round       ///< a dome
+};
 
 /// The same for either end of one label.
 struct LabelEndCaps {
-  Caps low = Caps::automatic, high = Caps::automatic;
+  Caps low = Caps::automatic;   ///< at its first section
+  Caps high = Caps::automatic;  ///< at its last section
 };
 
+/// How sections are stitched.
 struct StitchOptions {
   Caps caps = Caps::automatic;               ///< for every label without an entry in label_caps
   std::map<Label, LabelEndCaps> label_caps;  ///< per label
@@ -28,17 +34,19 @@ struct StitchOptions {
 
 /// What was chosen for a label's ends: "flat" or "round".
 struct LabelCaps {
-  std::string low, high;
+  std::string low;   ///< at its first section
+  std::string high;  ///< at its last section
 };
 
+/// The stitched surface, and what was done for it.
 struct StitchResult {
   InterfaceComplex complex;  ///< stack coordinates, mm
   /// the sections as they were stitched: snap-rounded, so that edges meet at common end points only
   Stack stack;
-  std::size_t added_points = 0;  ///< points that no section has (paper 3.3)
-  std::map<Label, LabelCaps> caps;
-  double snap_used_mm = 0;  ///< largest merge tolerance that was applied
-  std::vector<Warning> warnings;
+  std::size_t added_points = 0;     ///< points that no section has (paper 3.3)
+  std::map<Label, LabelCaps> caps;  ///< of each label
+  double snap_used_mm = 0;          ///< largest merge tolerance that was applied
+  std::vector<Warning> warnings;    ///< what rounding and the merge tolerance changed
 };
 
 /// Stitches a stack of sections into the closed complex of all label interfaces

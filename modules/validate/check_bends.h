@@ -9,16 +9,18 @@ namespace stackmesh {
 /// How rough a surface is: the angles between the normals of triangles that continue each other across an edge. 0 is
 /// flat, 180 a fold upon itself. NaN where there are no such edges.
 struct Bends {
-  std::size_t edges = 0;
+  std::size_t edges = 0;      ///< between triangles that continue each other
   double mean_deg = 0;        ///< weighted by the length of the edge
   double above_40_share = 0;  ///< of the edges, by number: those that bend by more than 40 degrees
 };
 
+/// How rough one label's surface is.
 struct LabelBends {
-  Label label = 0;
-  Bends bends;
+  Label label = 0;  ///< never the background
+  Bends bends;      ///< of its whole surface, whatever lies on the other side
 };
 
+/// How rough a complex is.
 struct BendCheck {
   Bends surface;                   ///< every pair of neighbours once, also where two labels share it
   std::vector<LabelBends> labels;  ///< ascending, without 0

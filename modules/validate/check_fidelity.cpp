@@ -12,6 +12,7 @@
 #include "validate/face_rectangles.h"
 #include "validate/grid_walk.h"
 #include "validate/label_runs.h"
+#include "validate/match_components.h"
 #include "validate/statistics.h"
 
 namespace stackmesh {
@@ -193,167 +194,80 @@ std::optional<Vec3> fit_shift(const std::vector<Vec3>& points, const std::vector
   return Vec3{x[0], x[1], x[2]};
 }
 
-/// A point along W, U, V in mm as a world point.
-Vec3 to_world(const LabelRuns& runs, const Vec3& p) {
-  return runs.origin_mm + (p.x * runs.direction[0] + p.y * runs.direction[1] + p.z * runs.direction[2]);
+/// What the walk through the voxel centres counted, of each label.
+void count_centres(const GridWalk& walk, const LabelVolume& volume, std::vector<LabelFidelity>& rows) {
+  const std::size_t labels = volume.labels.size();
+  for (std::size_t l = 1; l < labels; ++l) {
+    LabelFidelity& row = rows[l - 1];
+    row.label = volume.labels[l].number;
+    row.input_voxels = walk.input[l];
+    row.mesh_voxels = walk.mesh[l];
+    const std::size_t sum = walk.input[l] + walk.mesh[l];
+    row.wrong_centres = sum - 2 * walk.both[l];
+    row.wrong_centres_share =
+        walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
+    row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
+  }
 }
 
-/// Middles and sizes of the components of the input, and pieces of the mesh, that nothing answers to.
-void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
-                      const Boundaries& boundaries, const std::vector<char>& component_lost,
-                      const std::vector<char>& piece_lost, const std::vector<std::int32_t>& row_label,
-                      std::vector<LabelFidelity>& rows) {
-  struct Extent {
-    Vec3 sum, low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
-    double weight = 0;
-    void add(const Vec3& p, double w) {
-      sum = sum + w * p, weight += w;
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    double size() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
-  };
-  constexpr std::size_t kMost = 100;
-  const double voxel = runs.spacing_mm[0] * runs.spacing_mm[1] * runs.spacing_mm[2];
-  const auto part_of = [&](const Extent& e) {
-    UnmatchedPart part;
-    const Vec3 middle = (1 / e.weight) * e.sum;
-    part.where = to_world(runs, middle);
-    part.section = static_cast<int>(
-        std::clamp(std::lround(middle.z / runs.spacing_mm[2]), 0L, static_cast<long>(runs.size[2]) - 1));
-    part.size_mm = e.size();
-    return part;
-  };
-  const auto keep = [](std::vector<UnmatchedPart>& parts) {
-    std::stable_sort(parts.begin(), parts.end(),
-                     [](const UnmatchedPart& a, const UnmatchedPart& b) { return a.volume_mm3 > b.volume_mm3; });
-    if (parts.size() > kMost) parts.resize(kMost);
-  };
-  if (std::count(component_lost.begin(), component_lost.end(), 1) > 0) {
-    std::vector<Extent> extents(component_lost.size());
-    for (std::size_t line = 0; line + 1 < runs.start.size(); ++line)
-      for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
-        const LabelRun& r = runs.runs[k];
-        if (!component_lost[r.component]) continue;
-        const double u = static_cast<double>(line % static_cast<std::size_t>(runs.size[1])),
-                     v = static_cast<double>(line / static_cast<std::size_t>(runs.size[1]));
-        Extent& e = extents[r.component];
-        e.add(runs.place(0.5 * (r.begin + r.end - 1), u, v), r.end - r.begin);
-        const double weight = e.weight;
-        const Vec3 sum = e.sum;
-        e.add(runs.place(r.begin - 0.5, u - 0.5, v - 0.5), 0), e.add(runs.place(r.end - 0.5, u + 0.5, v + 0.5), 0);
-        e.weight = weight, e.sum = sum;
-      }
-    for (std::size_t c = 0; c < extents.size(); ++c) {
-      if (!component_lost[c]) continue;
-      UnmatchedPart part = part_of(extents[c]);
-      part.voxels = static_cast<std::size_t>(extents[c].weight);
-      part.volume_mm3 = extents[c].weight * voxel;
-      rows[runs.component_label[c] - 1].missing.push_back(part);
+/// Which label of the input each label of the mesh covers best.
+void find_best_matches(const GridWalk& walk, const LabelRuns& runs, const LabelVolume& volume,
+                       const std::vector<std::int32_t>& row_label, std::vector<LabelFidelity>& rows) {
+  const std::size_t labels = volume.labels.size();
+  for (std::size_t r = 0; r < row_label.size(); ++r) {
+    if (row_label[r] < 0) continue;
+    LabelFidelity& row = rows[row_label[r] - 1];
+    const Vec3& m = walk.row_middle[r];
+    row.middle = runs.to_world(runs.place(m.x, m.y, m.z));
+    for (std::size_t l = 1; l < labels; ++l) {
+      const std::size_t sum = walk.input[l] + walk.row_centres[r];
+      const double dice =
+          sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
+      if (dice > row.best_dice) row.best_dice = dice, row.best_match = volume.labels[l].number;
     }
   }
-  if (std::count(piece_lost.begin(), piece_lost.end(), 1) > 0) {
-    std::vector<Extent> extents(piece_lost.size());
-    for (std::size_t t = 0; t < boundaries.piece.size(); ++t)
-      for (const std::int32_t piece : boundaries.piece[t])
-        if (piece >= 0 && piece_lost[piece])
-          for (const std::int32_t v : complex.triangles[t].v) extents[piece].add(points[v], 1);
-    for (std::size_t p = 0; p < extents.size(); ++p) {
-      if (!piece_lost[p] || extents[p].weight == 0) continue;
-      UnmatchedPart part = part_of(extents[p]);
-      part.volume_mm3 = boundaries.piece_volume_mm3[p];
-      rows[row_label[boundaries.piece_row[p]] - 1].unmatched.push_back(part);
-    }
-  }
-  for (LabelFidelity& row : rows) keep(row.missing), keep(row.unmatched);
 }
 
-/// Pieces that cover no voxel centre of their label, by the component to one of whose voxels their middle is nearest:
-/// (component, piece), each piece and each component once.
-std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& runs, const InterfaceComplex& complex,
-                                                               const std::vector<Vec3>& points,
-                                                               const Boundaries& boundaries,
-                                                               const std::vector<std::int32_t>& row_label,
-                                                               const std::vector<char>& component_lost,
-                                                               const std::vector<char>& piece_lost) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
-  if (std::count(component_lost.begin(), component_lost.end(), 1) == 0 ||
-      std::count(piece_lost.begin(), piece_lost.end(), 1) == 0)
-    return pairs;
-  std::vector<Vec3> sum(piece_lost.size());
-  std::vector<double> corners(piece_lost.size(), 0);
-  for (std::size_t t = 0; t < boundaries.piece.size(); ++t)
-    for (const std::int32_t piece : boundaries.piece[t])
-      if (piece >= 0 && piece_lost[piece])
-        for (const std::int32_t v : complex.triangles[t].v) sum[piece] = sum[piece] + points[v], ++corners[piece];
-  // The nearest such voxel: of voxels that are thin along one axis, a piece may leave its own by less than half of
-  // their longest side.
-  std::vector<char> taken(component_lost.size(), 0);
-  const auto& s = runs.spacing_mm;
-  const double reach = 0.5 * std::max({s[0], s[1], s[2]});
-  for (std::size_t p = 0; p < piece_lost.size(); ++p) {
-    if (!piece_lost[p] || corners[p] == 0) continue;
-    const Vec3 m = (1 / corners[p]) * sum[p];
-    const auto beyond = [](double x, double begin, double end, double step) {
-      return std::max({(begin - 0.5) * step - x, x - (end - 0.5) * step, 0.0});
-    };
-    std::pair<double, std::int32_t> nearest = {reach, -1};
-    for (long v = std::max(0L, std::lround((m.z - reach) / s[2]));
-         v <= std::min<long>(runs.size[2] - 1, std::lround((m.z + reach) / s[2])); ++v)
-      for (long u = std::max(0L, std::lround((m.y - reach) / s[1]));
-           u <= std::min<long>(runs.size[1] - 1, std::lround((m.y + reach) / s[1])); ++u) {
-        const std::size_t line =
-            static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
-        for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
-          const LabelRun& r = runs.runs[k];
-          if (!component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]])
-            continue;
-          const double away = norm({beyond(m.x, r.begin, r.end, s[0]),
-                                    beyond(m.y, static_cast<double>(u), static_cast<double>(u + 1), s[1]),
-                                    beyond(m.z, static_cast<double>(v), static_cast<double>(v + 1), s[2])});
-          if (away <= reach && (nearest.second < 0 || std::pair{away, r.component} < nearest))
-            nearest = {away, r.component};
-        }
-      }
-    if (nearest.second < 0) continue;
-    taken[nearest.second] = 1;
-    pairs.push_back({nearest.second, static_cast<std::int32_t>(p)});
-  }
-  return pairs;
+std::vector<Box> boxes_of(const std::vector<Corners>& triangles) {
+  std::vector<Box> boxes(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const Vec3& p : {triangles[t].a, triangles[t].b, triangles[t].c}) boxes[t].add(p);
+  return boxes;
 }
 
-void match_components(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
-                      const Boundaries& boundaries, const GridWalk& walk, const std::vector<std::int32_t>& row_label,
-                      std::vector<LabelFidelity>& rows) {
-  std::vector<int> met_by_component(runs.component_label.size(), 0), met_by_solid(boundaries.piece_row.size(), 0);
-  for (const auto& [component, solid] : walk.meets) ++met_by_component[component], ++met_by_solid[solid];
-  std::vector<char> component_lost(met_by_component.size(), 0), piece_lost(met_by_solid.size(), 0);
-  for (std::size_t c = 0; c < met_by_component.size(); ++c) component_lost[c] = met_by_component[c] == 0;
-  for (std::size_t p = 0; p < met_by_solid.size(); ++p)
-    piece_lost[p] = row_label[boundaries.piece_row[p]] >= 0 && boundaries.piece_volume_mm3[p] > 0 &&
-                    met_by_solid[walk.solid[p]] == 0;
-  for (const auto& [component, piece] :
-       find_shrunk(runs, complex, points, boundaries, row_label, component_lost, piece_lost)) {
-    component_lost[component] = piece_lost[piece] = 0;
-    ++met_by_component[component], ++met_by_solid[piece];
-    ++rows[runs.component_label[component] - 1].shrunk_components;
+/// By how much a label's surface is shifted as a whole against its voxels, in voxels along the volume's axes.
+void measure_shift(const LabelRuns& runs, const std::vector<Corners>& triangles, const std::vector<Box>& boxes,
+                   const std::vector<FaceStrip>& faces, const FidelityOptions& options, LabelFidelity& row) {
+  const std::vector<Vec3> all_round = sample_faces(runs, faces, kShiftSamples, options.seed, false);
+  std::vector<std::int32_t> nearest;
+  distances_of(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
+  const double voxel = std::max({runs.spacing_mm[0], runs.spacing_mm[1], runs.spacing_mm[2]});
+  if (const auto shift = nearest.empty() ? std::nullopt : fit_shift(all_round, nearest, triangles, voxel)) {
+    const double along[3] = {shift->x, shift->y, shift->z};
+    double by_axis[3];
+    for (int k = 0; k < 3; ++k) by_axis[runs.axis[k]] = along[k] / runs.spacing_mm[k];
+    row.offset_voxels = Vec3{by_axis[0], by_axis[1], by_axis[2]};
   }
-  std::vector<char> one_to_one(rows.size() + 1, 1);
-  for (std::size_t c = 0; c < met_by_component.size(); ++c) {
-    LabelFidelity& row = rows[runs.component_label[c] - 1];
-    ++row.input_components;
-    row.missing_components += component_lost[c];
-    if (met_by_component[c] != 1) one_to_one[runs.component_label[c]] = 0;
-  }
-  for (std::size_t p = 0; p < met_by_solid.size(); ++p) {
-    const std::int32_t label = row_label[boundaries.piece_row[p]];
-    if (label < 0) continue;
-    if (boundaries.piece_volume_mm3[p] > 0) ++rows[label - 1].components;
-    if (met_by_solid[p] > 1) one_to_one[label] = 0;
-  }
-  for (std::size_t l = 0; l < rows.size(); ++l)
-    rows[l].components_match = one_to_one[l + 1] && rows[l].components == rows[l].input_components;
-  locate_unmatched(runs, complex, points, boundaries, component_lost, piece_lost, row_label, rows);
+}
+
+/// Distances between a label's voxel faces and its surface, both ways, and of its surface from the band.
+/// @param rounding_mm what is not outside the band yet
+void measure_distances(const LabelRuns& runs, const std::vector<Corners>& triangles,
+                       const std::vector<FaceStrip>& faces, const std::vector<Rectangle>& band, double rounding_mm,
+                       const FidelityOptions& options, LabelFidelity& row) {
+  const std::vector<Box> boxes = boxes_of(triangles);
+  const std::vector<Vec3> from_faces = sample_faces(runs, faces, options.face_samples, options.seed);
+  row.distance_samples = from_faces.size();
+  row.distance_mm = distribution(distances_of(from_faces, triangles, boxes, options.threads, triangle_distance2));
+  if (!triangles.empty() && !faces.empty()) measure_shift(runs, triangles, boxes, faces, options, row);
+
+  const std::vector<Rectangle> rectangles = rectangles_of(runs, faces);
+  const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
+  row.reverse_distance_samples = from_surface.size();
+  row.reverse_distance_mm =
+      distribution(distances_of(from_surface, rectangles, boxes_of(rectangles), options.threads, rectangle_distance2));
+  row.band_distance_mm = band_distance(
+      distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
 }
 
 }  // namespace
@@ -380,32 +294,11 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
   for (const Vec3& p : complex.points) points.push_back(runs.to_grid(p));
 
   std::vector<LabelFidelity> rows(labels > 0 ? labels - 1 : 0);
-  {
+  {  // the walk is large, and no longer needed when distances are measured
     const GridWalk walk = walk_grid(complex, boundaries, runs, points, row_label, labels, options.threads);
-    for (std::size_t l = 1; l < labels; ++l) {
-      LabelFidelity& row = rows[l - 1];
-      row.label = volume.labels[l].number;
-      row.input_voxels = walk.input[l];
-      row.mesh_voxels = walk.mesh[l];
-      const std::size_t sum = walk.input[l] + walk.mesh[l];
-      row.wrong_centres = sum - 2 * walk.both[l];
-      row.wrong_centres_share =
-          walk.input[l] > 0 ? static_cast<double>(row.wrong_centres) / static_cast<double>(walk.input[l]) : kNaN;
-      row.dice = sum > 0 ? 2.0 * static_cast<double>(walk.both[l]) / static_cast<double>(sum) : kNaN;
-    }
+    count_centres(walk, volume, rows);
     match_components(runs, complex, points, boundaries, walk, row_label, rows);
-    for (std::size_t r = 0; r < row_label.size(); ++r) {
-      if (row_label[r] < 0) continue;
-      LabelFidelity& row = rows[row_label[r] - 1];
-      const Vec3& m = walk.row_middle[r];
-      row.middle = to_world(runs, runs.place(m.x, m.y, m.z));
-      for (std::size_t l = 1; l < labels; ++l) {
-        const std::size_t sum = walk.input[l] + walk.row_centres[r];
-        const double dice =
-            sum > 0 ? 2.0 * static_cast<double>(walk.overlap[r * labels + l]) / static_cast<double>(sum) : 0;
-        if (dice > row.best_dice) row.best_dice = dice, row.best_match = volume.labels[l].number;
-      }
-    }
+    find_best_matches(walk, runs, volume, row_label, rows);
   }
 
   std::vector<std::vector<std::int32_t>> of_row(boundaries.labels.size());
@@ -421,42 +314,15 @@ std::vector<LabelFidelity> check_fidelity(const InterfaceComplex& complex, const
   double rounding_mm = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) rounding_mm = std::min(rounding_mm, 1e-4 * (runs.spacing_mm[k] + 2 * wider[k]));
   for (std::size_t l = 1; l < labels; ++l) {
-    LabelFidelity& row = rows[l - 1];
     std::vector<Corners> triangles;
-    std::vector<Box> boxes;
     if (label_row[l] >= 0)
       for (const std::int32_t t : of_row[label_row[l]]) {
         const auto& v = complex.triangles[t].v;
         const bool below = boundaries.row[t][0] == label_row[l];  // outwards, but for a mirrored grid
         triangles.push_back({points[v[0]], points[v[below ? 1 : 2]], points[v[below ? 2 : 1]]});
-        boxes.emplace_back();
-        for (const std::int32_t p : v) boxes.back().add(points[p]);
       }
-    const std::vector<Vec3> from_faces = sample_faces(runs, faces[l], options.face_samples, options.seed);
-    row.distance_samples = from_faces.size();
-    row.distance_mm = distribution(distances_of(from_faces, triangles, boxes, options.threads, triangle_distance2));
-    if (!triangles.empty() && !faces[l].empty()) {
-      const std::vector<Vec3> all_round = sample_faces(runs, faces[l], kShiftSamples, options.seed, false);
-      std::vector<std::int32_t> nearest;
-      distances_of(all_round, triangles, boxes, options.threads, triangle_distance2, &nearest);
-      const double voxel = std::max({runs.spacing_mm[0], runs.spacing_mm[1], runs.spacing_mm[2]});
-      if (const auto shift = nearest.empty() ? std::nullopt : fit_shift(all_round, nearest, triangles, voxel)) {
-        const double along[3] = {shift->x, shift->y, shift->z};
-        double by_axis[3];
-        for (int k = 0; k < 3; ++k) by_axis[runs.axis[k]] = along[k] / runs.spacing_mm[k];
-        row.offset_voxels = Vec3{by_axis[0], by_axis[1], by_axis[2]};
-      }
-    }
-
-    const std::vector<Rectangle> rectangles = rectangles_of(runs, faces[l]);
-    boxes = boxes_of(rectangles);
-    const std::vector<Vec3> from_surface = sample_surface(triangles, options.surface_samples);
-    row.reverse_distance_samples = from_surface.size();
-    row.reverse_distance_mm =
-        distribution(distances_of(from_surface, rectangles, boxes, options.threads, rectangle_distance2));
-    const std::vector<Rectangle> band = boxes_of_band(runs, bands[l], wider_mm);
-    row.band_distance_mm = band_distance(
-        distances_of(from_surface, band, boxes_of(band), options.threads, rectangle_distance2), rounding_mm);
+    measure_distances(runs, triangles, faces[l], boxes_of_band(runs, bands[l], wider_mm), rounding_mm, options,
+                      rows[l - 1]);
   }
   return rows;
 }

@@ -198,6 +198,70 @@ LabelTopology found(const LabelSurface& s) {
   return t;
 }
 
+using Edge = std::pair<std::int32_t, std::int32_t>;  // its vertices, ascending
+
+/// The shortest ways over a shell's edges, as trees: for each vertex the length of its way in mm, and the vertex before
+/// it, -1 at a tree's start.
+using Ways = std::map<std::int32_t, std::pair<double, std::int32_t>>;
+
+Ways shortest_ways(const InterfaceComplex& c, const std::map<std::int32_t, std::vector<std::int32_t>>& beside) {
+  Ways way;
+  for (const auto& start : beside) {
+    if (way.count(start.first)) continue;
+    std::priority_queue<std::pair<double, std::int32_t>, std::vector<std::pair<double, std::int32_t>>, std::greater<>>
+        queue;
+    queue.push({0, start.first});
+    way[start.first] = {0, -1};
+    while (!queue.empty()) {
+      const auto [length, v] = queue.top();
+      queue.pop();
+      if (length > way[v].first) continue;
+      for (std::int32_t w : beside.at(v)) {
+        const double to = length + norm(c.points[w] - c.points[v]);
+        const auto it = way.find(w);
+        if (it != way.end() && it->second.first <= to) continue;
+        way[w] = {to, v};
+        queue.push({to, w});
+      }
+    }
+  }
+  return way;
+}
+
+/// The loop that an edge closes with the ways to its ends: its place and size.
+HandlePlace loop_over(const InterfaceComplex& c, const Edge& edge, const Ways& way) {
+  std::vector<std::int32_t> a = {edge.first}, b = {edge.second};
+  for (std::vector<std::int32_t>* path : {&a, &b})
+    while (way.at(path->back()).second >= 0) path->push_back(way.at(path->back()).second);
+  while (a.size() > 1 && b.size() > 1 && a[a.size() - 2] == b[b.size() - 2]) a.pop_back(), b.pop_back();
+  a.insert(a.end(), b.begin(), b.end());
+  HandlePlace p;
+  Vec3 low = c.points[a[0]], high = low;
+  for (std::int32_t v : a) {
+    const Vec3& q = c.points[v];
+    low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
+    high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
+  }
+  p.where = 0.5 * (low + high);
+  p.size_mm = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  return p;
+}
+
+/// The smallest places, without those that lie within another one: the loop round a tunnel and the one through it lie
+/// at one place.
+std::vector<HandlePlace> smallest(std::vector<HandlePlace> places, std::size_t most) {
+  std::stable_sort(places.begin(), places.end(),
+                   [](const HandlePlace& a, const HandlePlace& b) { return a.size_mm < b.size_mm; });
+  std::vector<HandlePlace> out;
+  for (HandlePlace& p : places) {
+    if (out.size() == most) break;
+    const bool same = std::any_of(out.begin(), out.end(),
+                                  [&](const HandlePlace& q) { return norm(q.where - p.where) < 0.5 * q.size_mm; });
+    if (!same) out.push_back(std::move(p));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<LabelTopology> check_topology(const SurfaceCheck& surface, const LabelVolume& volume,
@@ -293,7 +357,7 @@ std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, st
   for (std::size_t t = 0; t < c.triangles.size(); ++t)
     if ((c.triangles[t].below == label) != (c.triangles[t].above == label))
       faces.push_back(static_cast<std::int32_t>(t));
-  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> edges;
+  std::map<Edge, std::vector<std::int32_t>> edges;
   std::map<std::int32_t, std::vector<std::int32_t>> beside;
   for (std::int32_t t : faces)
     for (int i = 0; i < 3; ++i) {
@@ -302,34 +366,15 @@ std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, st
       if (list.empty()) beside[key.first].push_back(key.second), beside[key.second].push_back(key.first);
       list.push_back(t);
     }
-  std::map<std::int32_t, std::pair<double, std::int32_t>> way;  // length and the vertex before
-  for (const auto& start : beside) {
-    if (way.count(start.first)) continue;
-    std::priority_queue<std::pair<double, std::int32_t>, std::vector<std::pair<double, std::int32_t>>, std::greater<>>
-        queue;
-    queue.push({0, start.first});
-    way[start.first] = {0, -1};
-    while (!queue.empty()) {
-      const auto [length, v] = queue.top();
-      queue.pop();
-      if (length > way[v].first) continue;
-      for (std::int32_t w : beside[v]) {
-        const double to = length + norm(c.points[w] - c.points[v]);
-        const auto it = way.find(w);
-        if (it != way.end() && it->second.first <= to) continue;
-        way[w] = {to, v};
-        queue.push({to, w});
-      }
-    }
-  }
-  const auto in_tree = [&](const std::pair<std::int32_t, std::int32_t>& e) {
+  Ways way = shortest_ways(c, beside);
+  const auto in_tree = [&](const Edge& e) {
     return way[e.first].second == e.second || way[e.second].second == e.first;
   };
   // The longest loops leave first: a spanning forest of triangles over the edges in falling order of the loop they
   // would close.
   struct Loop {
     double length;
-    std::pair<std::int32_t, std::int32_t> edge;
+    Edge edge;
   };
   std::vector<Loop> loops;
   for (const auto& [e, sides] : edges)
@@ -345,33 +390,11 @@ std::vector<HandlePlace> find_handles(const InterfaceComplex& c, Label label, st
   }
   std::vector<HandlePlace> places;
   for (const Loop& l : left) {
-    std::vector<std::int32_t> a = {l.edge.first}, b = {l.edge.second};
-    for (std::vector<std::int32_t>* path : {&a, &b})
-      while (way[path->back()].second >= 0) path->push_back(way[path->back()].second);
-    while (a.size() > 1 && b.size() > 1 && a[a.size() - 2] == b[b.size() - 2]) a.pop_back(), b.pop_back();
-    a.insert(a.end(), b.begin(), b.end());
-    HandlePlace p;
-    Vec3 low = c.points[a[0]], high = low;
-    for (std::int32_t v : a) {
-      const Vec3& q = c.points[v];
-      low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
-      high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
-    }
-    p.where = 0.5 * (low + high);
-    p.size_mm = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    HandlePlace p = loop_over(c, l.edge, way);
     p.triangles = edges[l.edge];
     places.push_back(std::move(p));
   }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const HandlePlace& a, const HandlePlace& b) { return a.size_mm < b.size_mm; });
-  std::vector<HandlePlace> out;  // the loop round a tunnel and the one through it lie at one place
-  for (HandlePlace& p : places) {
-    if (out.size() == most) break;
-    const bool same = std::any_of(out.begin(), out.end(),
-                                  [&](const HandlePlace& q) { return norm(q.where - p.where) < 0.5 * q.size_mm; });
-    if (!same) out.push_back(std::move(p));
-  }
-  return out;
+  return smallest(std::move(places), most);
 }
 
 }  // namespace stackmesh

@@ -12,13 +12,16 @@ namespace stackmesh {
 
 /// What the slices say of a label's topology, and what its surface has.
 struct LabelTopology {
-  Label label = 0;
-  /// tunnels and loops; implied: at most so many, if parts go on where they overlap
-  long handles = 0, implied_handles = 0;
-  int pieces = 0, implied_pieces = 0;
+  Label label = 0;           ///< never the background
+  long handles = 0;          ///< tunnels and loops of its surface
+  long implied_handles = 0;  ///< at most so many are in the slices, if parts go on where they overlap
+  int pieces = 0;            ///< solid pieces of its surface
+  int implied_pieces = 0;    ///< pieces of its slices, if parts go on where they overlap
+  /// Handles that no slice implies.
   long surplus() const { return handles > implied_handles ? handles - implied_handles : 0; }
 };
 
+/// How slices are looked at.
 struct TopologyOptions {
   int axis = 2;              ///< along which a volume's slices are stacked
   int threads = 0;           ///< 0: all

@@ -10,8 +10,8 @@ namespace stackmesh {
 /// What one wedge, or pyramid, is like.
 struct WedgeShape {
   /// smallest over its corners: determinant over the product of the three edges, 1 for the regular one; of second
+  /// order times the smallest determinant over that of the straight element there
   double scaled_jacobian = 0;
-  ///< order times the smallest determinant over that of the straight element there
   double volume_mm3 = 0;  ///< within its curved sides
   /// a corner's exact orientation, or the determinant at an integration point (of second order at every node, too), is
   /// not positive

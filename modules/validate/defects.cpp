@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 
 #include "validate/boundaries.h"
@@ -79,11 +80,14 @@ class DefectFinder {
     all_.insert(all_.end(), found.begin(), found.end());
   }
 
+  using Edge = std::array<std::int32_t, 2>;  // its points, ascending
+  using TrianglesAt = std::map<Edge, std::vector<std::int32_t>>;
+
   /// Open edges, joined over their ends; those around a triangle that faces against its neighbours are told as that.
   void open_edges() {
     const auto& edges = surface_.open_edge_list;
     if (edges.empty()) return;
-    std::map<std::array<std::int32_t, 2>, std::vector<std::int32_t>> triangles_at;
+    TrianglesAt triangles_at;
     for (const auto& e : edges) triangles_at[e];
     for (std::size_t t = 0; t < complex_.triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) {
@@ -91,13 +95,22 @@ class DefectFinder {
         const auto it = triangles_at.find({std::min(a, b), std::max(a, b)});
         if (it != triangles_at.end()) it->second.push_back(static_cast<std::int32_t>(t));
       }
-    // A turned triangle: all three edges are open, and each is met by another triangle.
+    std::set<Edge> told;
+    std::vector<Defect> turned = turned_triangles(triangles_at, told);
+    keep(turned, turned.size());
+    std::vector<Defect> holes;
+    for (const auto& [root, loop] : loops_of(edges, told)) holes.push_back(hole(loop, triangles_at));
+    const std::size_t total = holes.size();
+    keep(holes, total);
+  }
+
+  /// Triangles whose three edges are all open, and each is met by another triangle. Their edges are `told`.
+  std::vector<Defect> turned_triangles(const TrianglesAt& triangles_at, std::set<Edge>& told) const {
     std::map<std::int32_t, int> met;
     for (const auto& [edge, triangles] : triangles_at)
       if (triangles.size() == 2)
         for (const std::int32_t t : triangles) ++met[t];
     std::vector<Defect> turned;
-    std::map<std::array<std::int32_t, 2>, bool> told;
     for (const auto& [t, count] : met) {
       if (count != 3) continue;
       const InterfaceTriangle& triangle = complex_.triangles[t];
@@ -114,12 +127,16 @@ class DefectFinder {
       d.text = "triangle " + std::to_string(t) + " faces against its neighbours " + place_of(d.where);
       for (int k = 0; k < 3; ++k) {
         const std::int32_t a = triangle.v[k], b = triangle.v[(k + 1) % 3];
-        told[{std::min(a, b), std::max(a, b)}] = true;
+        told.insert({std::min(a, b), std::max(a, b)});
       }
       turned.push_back(std::move(d));
     }
-    keep(turned, turned.size());
+    return turned;
+  }
 
+  /// The edges that are not told yet, joined over their ends.
+  static std::map<std::int32_t, std::vector<Edge>> loops_of(const std::vector<Edge>& edges,
+                                                            const std::set<Edge>& told) {
     std::unordered_map<std::int32_t, std::int32_t> number;
     std::vector<std::int32_t> points;
     for (const auto& e : edges)
@@ -128,38 +145,36 @@ class DefectFinder {
     DisjointSets loops(points.size());
     for (const auto& e : edges)
       if (!told.count(e)) loops.join(number[e[0]], number[e[1]]);
-    std::map<std::int32_t, std::vector<std::array<std::int32_t, 2>>> by_loop;
+    std::map<std::int32_t, std::vector<Edge>> by_loop;
     for (const auto& e : edges)
       if (!told.count(e)) by_loop[loops.find(number[e[0]])].push_back(e);
-    std::vector<Defect> holes;
-    for (const auto& [root, loop] : by_loop) {
-      Defect d;
-      Extent extent;
-      std::map<std::int32_t, int> degree;
-      bool single = true;
-      for (const auto& e : loop) {
-        for (const std::int32_t p : e) extent.add(complex_.points[p]), ++degree[p];
-        single = single && triangles_at[e].size() == 1;
-      }
-      const bool ring =
-          single && std::all_of(degree.begin(), degree.end(), [](const auto& p) { return p.second == 2; });
-      const InterfaceTriangle* beside =
-          triangles_at[loop[0]].empty() ? nullptr : &complex_.triangles[triangles_at[loop[0]][0]];
-      if (beside) d.label = beside->below != 0 ? beside->below : beside->above;
-      d.kind = ring ? "hole" : "open_edge";
-      for (const auto& p : degree)
-        d.where = d.where + (1.0 / static_cast<double>(degree.size())) * complex_.points[p.first];
-      d.size_mm = extent.size();
-      d.count = loop.size();
-      d.entity_kind = "points";
-      for (const auto& p : degree) d.entities.push_back(p.first);
-      d.text = (ring ? "a hole of " + counted(loop.size(), "edge", "edges")
-                     : counted(loop.size(), "edge", "edges") + " where the surface does not close") +
-               measured(", %.2f mm wide, ", d.size_mm) + place_of(d.where);
-      holes.push_back(std::move(d));
+    return by_loop;
+  }
+
+  Defect hole(const std::vector<Edge>& loop, const TrianglesAt& triangles_at) const {
+    Defect d;
+    Extent extent;
+    std::map<std::int32_t, int> degree;
+    bool single = true;
+    for (const auto& e : loop) {
+      for (const std::int32_t p : e) extent.add(complex_.points[p]), ++degree[p];
+      single = single && triangles_at.at(e).size() == 1;
     }
-    const std::size_t total = holes.size();
-    keep(holes, total);
+    const bool ring = single && std::all_of(degree.begin(), degree.end(), [](const auto& p) { return p.second == 2; });
+    const InterfaceTriangle* beside =
+        triangles_at.at(loop[0]).empty() ? nullptr : &complex_.triangles[triangles_at.at(loop[0])[0]];
+    if (beside) d.label = beside->below != 0 ? beside->below : beside->above;
+    d.kind = ring ? "hole" : "open_edge";
+    for (const auto& p : degree)
+      d.where = d.where + (1.0 / static_cast<double>(degree.size())) * complex_.points[p.first];
+    d.size_mm = extent.size();
+    d.count = loop.size();
+    d.entity_kind = "points";
+    for (const auto& p : degree) d.entities.push_back(p.first);
+    d.text = (ring ? "a hole of " + counted(loop.size(), "edge", "edges")
+                   : counted(loop.size(), "edge", "edges") + " where the surface does not close") +
+             measured(", %.2f mm wide, ", d.size_mm) + place_of(d.where);
+    return d;
   }
 
   /// Pairs that share a triangle or whose triangles share a point are one place.

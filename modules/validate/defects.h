@@ -9,6 +9,7 @@
 
 namespace stackmesh {
 
+/// What is listed as a defect.
 struct DefectOptions {
   /// longest list of one kind, largest first; the text of the last says how many there are
   std::size_t most_of_a_kind = 100;

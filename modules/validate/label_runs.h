@@ -31,6 +31,10 @@ struct LabelRuns {
     const Vec3 d = world - origin_mm;
     return {dot(d, direction[0]), dot(d, direction[1]), dot(d, direction[2])};
   }
+  /// And back.
+  Vec3 to_world(const Vec3& grid) const {
+    return origin_mm + (grid.x * direction[0] + grid.y * direction[1] + grid.z * direction[2]);
+  }
   Vec3 place(double w, double u, double v) const { return {w * spacing_mm[0], u * spacing_mm[1], v * spacing_mm[2]}; }
 };
 

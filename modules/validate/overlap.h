@@ -24,6 +24,7 @@ struct LabelOverlap {
 /// outlive it.
 class OverlapMeter {
  public:
+  /// `stack_axis` is that of the volume, 0, 1 or 2; 0 threads: all of the machine.
   OverlapMeter(const LabelVolume& volume, int stack_axis, int threads);
   ~OverlapMeter();
   /// `frame` takes the mesh's points to the volume's world. Looks at every k-th slice, so that about `slices` are seen

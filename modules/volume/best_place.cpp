@@ -30,10 +30,17 @@ double quality_of(const FanTet& t, const Vec3& p) {
   return tet_quality(p, t.b, t.c, t.d);
 }
 
-Vec3 gradient(const FanTet& t, const Vec3& p, double h) {
-  const auto at = [&](double x, double y, double z) { return quality_of(t, {p.x + x, p.y + y, p.z + z}); };
-  return {(at(h, 0, 0) - at(-h, 0, 0)) / (2 * h), (at(0, h, 0) - at(0, -h, 0)) / (2 * h),
-          (at(0, 0, h) - at(0, 0, -h)) / (2 * h)};
+/// Quality of each tet of the fan with its corner at p; stops, with what it has, at one that is not above `stop`.
+/// @return the worst
+double qualities_at(const std::vector<FanTet>& fan, const Vec3& p, double stop, std::vector<double>& out) {
+  double worst = 2;
+  out.clear();
+  for (const FanTet& t : fan) {
+    out.push_back(quality_of(t, p));
+    worst = std::min(worst, out.back());
+    if (worst <= stop) break;
+  }
+  return worst;
 }
 
 }  // namespace
@@ -49,16 +56,22 @@ double fan_quality(const std::vector<FanTet>& fan, const Vec3& p, double stop) {
 
 Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double enough,
                 const std::function<bool(const Vec3&)>& allowed) {
+  if (quality >= enough) return p;
   double size = 1e300;
   for (const FanTet& t : fan)
     for (const Vec3& corner : {t.b, t.c, t.d}) size = std::min(size, norm(corner - p));
   double reach = 0.3 * size;
-  std::vector<Vec3> gradients;
+  static thread_local std::vector<Vec3> gradients;
+  static thread_local std::vector<double> here, there;
+  qualities_at(fan, p, -2, here);
   for (int round = 0; round < 12 && quality < enough && reach > 1e-3 * size; ++round) {
     gradients.clear();
     const double close = quality + std::max(0.02, 0.1 * std::abs(quality));
-    for (const FanTet& t : fan)
-      if (quality_of(t, p) < close) gradients.push_back(gradient(t, p, 1e-5 * size));
+    for (std::size_t i = 0; i < fan.size(); ++i)
+      if (here[i] < close) {
+        gradients.emplace_back();
+        tet_quality(p, fan[i].b, fan[i].c, fan[i].d, &gradients.back());
+      }
     if (gradients.empty()) break;
     const Vec3 way = nearest_to_origin(gradients);
     const double steep = norm(way);
@@ -67,9 +80,10 @@ Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double 
     for (int half = 0; half < 5; ++half, reach /= 2) {
       const Vec3 to = p + (reach / steep) * way;
       if (allowed && !allowed(to)) continue;
-      const double q = fan_quality(fan, to, quality);
+      const double q = qualities_at(fan, to, quality + kGain, there);
       if (q <= quality + kGain) continue;
       p = to, quality = q;
+      std::swap(here, there);
       moved = true;
       break;
     }

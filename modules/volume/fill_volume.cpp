@@ -15,6 +15,7 @@
 #include "volume/improve_tets.h"
 #include "volume/label_tets.h"
 #include "volume/relax_surface.h"
+#include "volume/tetgen_call.h"
 #include "volume/tetgen_words.h"
 #include "volume/worker_process.h"
 #include "volume/worker_protocol.h"
@@ -23,6 +24,7 @@ namespace stackmesh {
 namespace {
 
 using Status = FillResult::Status;
+using Call = volume::TetgenCall;
 using volume::Compact;
 using worker::Clock;
 using worker::Reply;
@@ -60,55 +62,6 @@ struct Group {
   std::optional<double> max_volume_mm3;
 };
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// The power of two that brings an extreme aspect (steps along z against edges in the plane) back to about 1;
-/// 1 when it is within 1/16 .. 16.
-double z_scale_for_aspect(const InterfaceComplex& complex) {
-  std::vector<double> steps, edges;
-  for (const InterfaceTriangle& t : complex.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 d = complex.points[t.v[(k + 1) % 3]] - complex.points[t.v[k]];
-      if (d.z != 0) steps.push_back(std::abs(d.z));
-      if (d.x != 0 || d.y != 0) edges.push_back(std::hypot(d.x, d.y));
-    }
-  }
-  const double step = median(steps), edge = median(edges);
-  if (step <= 0 || edge <= 0) return 1;
-  const double ratio = step / edge;
-  if (ratio <= 16 && ratio >= 1.0 / 16) return 1;
-  return std::ldexp(1.0, -static_cast<int>(std::lround(std::log2(ratio))));
-}
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.10g", v);
-  return text;
-}
-
-/// One way to call TetGen.
-struct Call {
-  bool refine = false;
-  std::string tolerance;  // "" (TetGen's 1e-8 of the box) or "T1e-12"
-  double z_scale = 1;
-  int turns = 0;  // of the axes, x -> y -> z -> x: exact, and TetGen takes another way
-};
-
-Vec3 turned(Vec3 p, int turns) {
-  for (int i = 0; i < turns; ++i) p = {p.y, p.z, p.x};
-  return p;
-}
-
-std::string describe(const Call& call, const std::string& switches) {
-  return "TetGen -" + switches + (call.z_scale == 1 ? "" : " with z scaled by " + number(call.z_scale)) +
-         (call.turns == 0 ? "" : " with the axes turned " + std::string(call.turns == 1 ? "once" : "twice"));
-}
-
 class Filler {
  public:
   Filler(const InterfaceComplex& complex, const FillOptions& options)
@@ -138,7 +91,7 @@ class Filler {
 
     if (is_flat()) return failure(Status::refused, "the surface encloses nothing: it lies in one plane");
 
-    const double scale = z_scale_for_aspect(complex_);
+    const double scale = volume::z_scale_for_aspect(complex_);
     const bool wants_refinement = options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 ||
                                   options_.inner_growth || !options_.label_max_volume_mm3.empty();
     std::string before;  // what was tried and failed, for the message
@@ -163,7 +116,14 @@ class Filler {
       refinement_pays = result.status != Status::timed_out;
       before = result.message;
     }
-    Call call{false, "", scale};
+    const Call call{false, "", scale};
+    if (!wants_refinement && options_.improve_deg) {  // the improvement takes the time: in halves, as above
+      if (const std::vector<Group> own = groups(); !own.empty()) {
+        FillResult result = attempt(call, deadline_, own);
+        if (result.status == Status::verified || killed_) return result;
+        retry_is_useless_ = false;
+      }
+    }
     FillResult result = attempt(call, deadline_);
     if (result.status == Status::verified) return with_note(std::move(result), before);
     if (retry_is_useless_ || result.status == Status::timed_out) return result;
@@ -227,48 +187,16 @@ class Filler {
     return out;
   }
 
-  std::string switches(const Call& call, const std::optional<double>& max_volume_mm3) const {
-    std::string s = "p";
-    if (call.refine) {
-      // A volume bound alone refines too: TetGen's own ratio of 2, no dihedral bound.
-      s += "q" + number(options_.radius_edge.value_or(2));
-      if (options_.dihedral_deg) s += "/" + number(*options_.dihedral_deg);
-      if (sized(call, max_volume_mm3)) s += "m";
-      if (max_volume_mm3) s += "a" + number(*max_volume_mm3 * call.z_scale);
-    }
-    // Y keeps the surface; M keeps TetGen from merging points closer than its tolerance, which would make
-    // features thinner than 1e-8 of the box intersect themselves.
-    return s + "YM" + call.tolerance;
-  }
-
-  bool sized(const Call& call, const std::optional<double>& max_volume_mm3) const {
-    return call.refine && options_.inner_growth && !max_volume_mm3 && call.z_scale == 1;
-  }
-
-  /// The edge length wanted at each point, for tets inside: the mean of the surface's edges there, grown. TetGen's
-  /// edges come out longer than asked by the factor.
-  std::vector<double> sizes(const Compact& part) const {
-    constexpr double kTetGensOwn = 0.85;
-    std::vector<double> sum(part.points.size(), 0), count(part.points.size(), 0);
-    for (std::size_t i = 0; i < part.corners.size(); ++i) {
-      const std::int32_t a = part.corners[i], b = part.corners[i % 3 == 2 ? i - 2 : i + 1];
-      const double length = norm(part.points[b] - part.points[a]);
-      for (const std::int32_t v : {a, b}) sum[v] += length, count[v] += 1;
-    }
-    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] *= kTetGensOwn * *options_.inner_growth / count[p];
-    return sum;
-  }
-
   Reply call_worker(const std::string& switches, const Call& call, bool sized, const Compact& part,
                     Clock::time_point deadline) {
     std::vector<Vec3> moved;
     const bool as_is = call.z_scale == 1 && call.turns == 0;
     if (!as_is) {
       moved = part.points;
-      for (Vec3& p : moved) p = turned({p.x, p.y, p.z * call.z_scale}, call.turns);
+      for (Vec3& p : moved) p = volume::turned({p.x, p.y, p.z * call.z_scale}, call.turns);
     }
     std::vector<double> edges;
-    if (sized) edges = sizes(part);
+    if (sized) edges = volume::inner_sizes(part, *options_.inner_growth);
     const worker::Request request{switches, as_is ? &part.points : &moved, edges.empty() ? nullptr : &edges,
                                   &part.corners};
     Reply reply = worker::run(program_, request, deadline, options_.given_up);
@@ -284,7 +212,7 @@ class Filler {
   }
 
   FillResult attempt(const Call& call, Clock::time_point deadline) {
-    const std::string name = describe(call, switches(call, options_.max_volume_mm3));
+    const std::string name = volume::describe(call, volume::switches(call, options_, options_.max_volume_mm3));
     TetMesh mesh;
     FillResult failed = fill(call, input_, options_.max_volume_mm3, deadline, name, mesh);
     return failed.message.empty() ? assemble(std::move(mesh), name) : failed;
@@ -292,8 +220,8 @@ class Filler {
 
   /// The labels of each group on their own, side by side.
   FillResult attempt(const Call& call, Clock::time_point deadline, const std::vector<Group>& own) {
-    const std::string name =
-        describe(call, switches(call, own[0].max_volume_mm3)) + " in " + std::to_string(own.size()) + " parts";
+    const std::string name = volume::describe(call, volume::switches(call, options_, own[0].max_volume_mm3)) + " in " +
+                             std::to_string(own.size()) + " parts";
     std::vector<TetMesh> meshes(own.size());
     std::vector<FillResult> failed(own.size());
     parallel_for(own.size(), options_.threads, [&](std::size_t i) {
@@ -325,7 +253,8 @@ class Filler {
   FillResult fill(const Call& call, const Compact& part, const std::optional<double>& max_volume_mm3,
                   Clock::time_point deadline, const std::string& name, TetMesh& mesh) {
     const auto start = Clock::now();
-    Reply reply = call_worker(switches(call, max_volume_mm3) + "Jn", call, sized(call, max_volume_mm3), part, deadline);
+    Reply reply = call_worker(volume::switches(call, options_, max_volume_mm3) + "Jn", call,
+                              volume::has_sizes(call, options_, max_volume_mm3), part, deadline);
     switch (reply.kind) {
       case Reply::Kind::not_a_worker:
         retry_is_useless_ = true;
@@ -353,7 +282,7 @@ class Filler {
     const auto known = static_cast<std::int32_t>(part.points.size());
     const auto offset = static_cast<std::int32_t>(complex_.points.size()) - known;
     for (const Vec3& added : reply.added_points) {
-      const Vec3 p = turned(added, (3 - call.turns) % 3);
+      const Vec3 p = volume::turned(added, (3 - call.turns) % 3);
       mesh.points.push_back({p.x, p.y, p.z / call.z_scale});
     }
     for (std::int32_t& v : reply.tets)
@@ -407,7 +336,8 @@ class Filler {
       const double off = std::max(0.0, std::abs(a.mm3 - b.mm3) - 1e-13 * (a.terms + b.terms));
       if (off > 1e-6 * larger)
         return failure(Status::volume_mismatch, name + ": label " + std::to_string(label) + " encloses " +
-                                                    number(a.mm3) + " mm3 but was filled with " + number(b.mm3));
+                                                    volume::number(a.mm3) + " mm3 but was filled with " +
+                                                    volume::number(b.mm3));
       if (larger > 0) worst = std::max(worst, off / larger);
     }
 
@@ -415,7 +345,7 @@ class Filler {
     const std::size_t added = mesh.points.size() - complex_.points.size();
     result.message = name + ": " + std::to_string(mesh.tets.size()) + " tetrahedra" + improved + ", " +
                      std::to_string(added) + " points added inside";
-    if (worst > 1e-9) result.message += ", volumes within " + number(worst) + " of the surface's";
+    if (worst > 1e-9) result.message += ", volumes within " + volume::number(worst) + " of the surface's";
     result.mesh = std::move(mesh);
     return result;
   }
@@ -474,29 +404,6 @@ class Filler {
 };
 
 }  // namespace
-
-double estimate_tets(const InterfaceComplex& complex, const FillOptions& options) {
-  double edges = 0, volume = 0, sides = 0;
-  for (const InterfaceTriangle& t : complex.triangles) {
-    if (t.below == t.above) continue;
-    const Vec3 &a = complex.points[t.v[0]], &b = complex.points[t.v[1]], &c = complex.points[t.v[2]];
-    const double own = (t.below != 0) + (t.above != 0);
-    sides += own;
-    edges += own * (norm(b - a) + norm(c - b) + norm(a - c)) / 3;
-  }
-  const auto volumes = volume::surface_volumes(complex);
-  for (const auto& [label, v] : volumes) volume += std::abs(v.mm3);
-  if (sides == 0) return 0;
-  const double edge = edges / sides * options.inner_growth.value_or(4);
-  double tets = 1.5 * sides + volume / (0.12 * edge * edge * edge);
-  if (options.max_volume_mm3) tets = std::max(tets, 1.5 * volume / *options.max_volume_mm3);
-  double bounded = 0;
-  for (const auto& [label, v] : volumes)
-    if (const auto own = options.label_max_volume_mm3.find(label); own != options.label_max_volume_mm3.end())
-      bounded += 1.5 * std::abs(v.mm3) / own->second;
-  tets = std::max(tets, bounded);
-  return tets;
-}
 
 FillResult fill_volume(const InterfaceComplex& complex, const FillOptions& options) {
   check_input(complex, options);

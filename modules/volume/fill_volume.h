@@ -40,6 +40,10 @@ struct FillOptions {
 /// About how many tets fill_volume() would make, from the areas of the surface and the volumes of the labels.
 double estimate_tets(const InterfaceComplex& complex, const FillOptions& options);
 
+/// Mean thickness of the labels, twice their volume over the area of their surfaces, in mean lengths of the surface's
+/// edges (weighted by area). Below 1 the labels are plates and walls thinner than their triangles are long.
+double thickness_in_edges(const InterfaceComplex& complex);
+
 /// What came of it. Only `verified` carries a mesh.
 struct FillResult {
   enum class Status {

@@ -181,6 +181,85 @@ void add(Volume& volume, double term) {
   volume.terms += std::abs(term);
 }
 
+constexpr std::size_t kChunk = 1 << 13;  // tets, or points, that one thread takes at once
+
+std::size_t chunks(std::size_t n) {
+  return (n + kChunk - 1) / kChunk;
+}
+
+std::size_t count_inverted(const TetMesh& mesh, int threads) {
+  std::vector<std::size_t> flat(chunks(mesh.tets.size()), 0);
+  parallel_for(flat.size(), threads, [&](std::size_t i) {
+    for (std::size_t t = i * kChunk; t < std::min(mesh.tets.size(), (i + 1) * kChunk); ++t) {
+      const auto& v = mesh.tets[t];
+      flat[i] += orientation(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]) <= 0;
+    }
+  });
+  return std::accumulate(flat.begin(), flat.end(), std::size_t{0});
+}
+
+/// A face of a tet, or one side of a triangle of the surface, without its smallest corner.
+struct HalfFace {
+  std::int32_t middle, high, triangle;  // its other corners, ascending; its triangle, -1: a tet's face
+  Label label;
+  bool even;  // the label lies on the side to which the ascending corners turn their normal
+};
+
+std::pair<std::int32_t, HalfFace> half_face(Triple v, Label label, std::int32_t triangle) {
+  bool even = true;
+  const auto order = [&](int i, int j) {
+    if (v[i] > v[j]) std::swap(v[i], v[j]), even = !even;
+  };
+  order(0, 1), order(1, 2), order(0, 1);
+  return {v[0], {v[1], v[2], triangle, label, even}};
+}
+
+/// Half faces by their smallest corner: those of point p are begin[p] .. begin[p + 1] - 1.
+struct HalfFaces {
+  std::vector<HalfFace> all;
+  std::vector<std::int64_t> begin;
+};
+
+HalfFaces half_faces_of(const TetMesh& mesh) {
+  HalfFaces out;
+  out.begin.assign(mesh.points.size() + 1, 0);
+  for (const auto& t : mesh.tets)  // how often each corner is the smallest of a tet's faces
+    for (const auto& f : kFace) ++out.begin[std::min({t[f[0]], t[f[1]], t[f[2]]}) + 1];
+  for (const InterfaceTriangle& f : mesh.faces) out.begin[std::min({f.v[0], f.v[1], f.v[2]}) + 1] += 2;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) out.begin[p + 1] += out.begin[p];
+  out.all.resize(out.begin.back());
+  std::vector<std::int64_t> next(out.begin.begin(), out.begin.end() - 1);
+  const auto add = [&](const std::pair<std::int32_t, HalfFace>& h) { out.all[next[h.first]++] = h.second; };
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (const auto& f : kFace)
+      add(half_face({mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]]}, mesh.labels[t], -1));
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const InterfaceTriangle& f = mesh.faces[i];
+    add(half_face(f.v, f.above, static_cast<std::int32_t>(i)));
+    add(half_face({f.v[0], f.v[2], f.v[1]}, f.below, static_cast<std::int32_t>(i)));
+  }
+  return out;
+}
+
+/// Whether half faces on the same corners fit: two tets of one label, or a triangle's two sides and the tets on them.
+/// @param wall the triangle, -1: none
+bool fit_together(std::vector<HalfFace>::const_iterator from, std::vector<HalfFace>::const_iterator to,
+                  std::int32_t& wall) {
+  int tets[2] = {0, 0}, walls = 0;
+  Label of_tet[2] = {0, 0}, of_wall[2] = {0, 0};
+  wall = -1;
+  for (auto j = from; j != to; ++j) {
+    if (j->triangle < 0) {
+      ++tets[j->even], of_tet[j->even] = j->label;
+    } else {
+      ++walls, of_wall[j->even] = j->label, wall = j->triangle;
+    }
+  }
+  return tets[0] <= 1 && tets[1] <= 1 &&
+         (walls == 0 ? tets[0] == 1 && tets[1] == 1 && of_tet[0] == of_tet[1]
+                     : walls == 2 && of_tet[0] == of_wall[0] && of_tet[1] == of_wall[1]);
+}
+
 }  // namespace
 
 Finding check_closed(const InterfaceComplex& complex) {
@@ -275,78 +354,24 @@ Finding label_tets(RawTets raw, TetMesh& mesh) {
 }
 
 Finding check_filled(const TetMesh& mesh, int threads) {
-  constexpr std::size_t kChunk = 1 << 13;
-  const auto chunks = [](std::size_t n) { return (n + kChunk - 1) / kChunk; };
-  std::vector<std::size_t> flat(chunks(mesh.tets.size()), 0);
-  parallel_for(flat.size(), threads, [&](std::size_t i) {
-    for (std::size_t t = i * kChunk; t < std::min(mesh.tets.size(), (i + 1) * kChunk); ++t) {
-      const auto& v = mesh.tets[t];
-      flat[i] += orientation(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]) <= 0;
-    }
-  });
-  if (const std::size_t n = std::accumulate(flat.begin(), flat.end(), std::size_t{0}); n > 0)
+  if (const std::size_t n = count_inverted(mesh, threads); n > 0)
     return {count_of(n, "tetrahedron is", "tetrahedra are") + " flat or inverted", {}};
-
-  // Half faces by their smallest corner. `even`: the tet lies on the side to which the ascending corners turn their
-  // normal.
-  struct Half {
-    std::int32_t middle, high, triangle;  // -1: a tet's face
-    Label label;
-    bool even;
-  };
-  const auto half = [](Triple v, Label label, std::int32_t triangle) {
-    bool even = true;
-    const auto order = [&](int i, int j) {
-      if (v[i] > v[j]) std::swap(v[i], v[j]), even = !even;
-    };
-    order(0, 1), order(1, 2), order(0, 1);
-    return std::pair<std::int32_t, Half>{v[0], {v[1], v[2], triangle, label, even}};
-  };
-  const auto each = [&](auto visit) {
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-      for (const auto& f : kFace)
-        visit(half({mesh.tets[t][f[0]], mesh.tets[t][f[1]], mesh.tets[t][f[2]]}, mesh.labels[t], -1));
-    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-      const InterfaceTriangle& f = mesh.faces[i];
-      visit(half(f.v, f.above, static_cast<std::int32_t>(i)));
-      visit(half({f.v[0], f.v[2], f.v[1]}, f.below, static_cast<std::int32_t>(i)));
-    }
-  };
-  std::vector<std::int64_t> begin(mesh.points.size() + 1, 0);
-  for (const auto& t : mesh.tets)  // how often each corner is the smallest of a tet's faces
-    for (const auto& f : kFace) ++begin[std::min({t[f[0]], t[f[1]], t[f[2]]}) + 1];
-  for (const InterfaceTriangle& f : mesh.faces) begin[std::min({f.v[0], f.v[1], f.v[2]}) + 1] += 2;
-  for (std::size_t p = 0; p < mesh.points.size(); ++p) begin[p + 1] += begin[p];
-  std::vector<Half> halves(begin.back());
-  std::vector<std::int64_t> next(begin.begin(), begin.end() - 1);
-  each([&](const auto& h) { halves[next[h.first]++] = h.second; });
-
+  HalfFaces halves = half_faces_of(mesh);
   std::vector<Finding> findings(chunks(mesh.points.size()));
   std::vector<std::size_t> loose(findings.size(), 0);
   parallel_for(findings.size(), threads, [&](std::size_t chunk) {
     for (std::size_t p = chunk * kChunk; p < std::min(mesh.points.size(), (chunk + 1) * kChunk); ++p) {
-      const auto from = halves.begin() + begin[p], to = halves.begin() + begin[p + 1];
-      std::sort(from, to, [](const Half& a, const Half& b) {
+      const auto from = halves.all.begin() + halves.begin[p], to = halves.all.begin() + halves.begin[p + 1];
+      std::sort(from, to, [](const HalfFace& a, const HalfFace& b) {
         return a.middle != b.middle ? a.middle < b.middle
                : a.high != b.high   ? a.high < b.high
                : a.even != b.even   ? a.even
                                     : a.triangle < b.triangle;
       });
       for (auto i = from, j = from; i != to; i = j) {
-        int tets[2] = {0, 0}, walls = 0;
-        Label of_tet[2] = {0, 0}, of_wall[2] = {0, 0};
+        while (j != to && j->middle == i->middle && j->high == i->high) ++j;
         std::int32_t wall = -1;
-        for (j = i; j != to && j->middle == i->middle && j->high == i->high; ++j) {
-          if (j->triangle < 0) {
-            ++tets[j->even], of_tet[j->even] = j->label;
-          } else {
-            ++walls, of_wall[j->even] = j->label, wall = j->triangle;
-          }
-        }
-        const bool fits = tets[0] <= 1 && tets[1] <= 1 &&
-                          (walls == 0 ? tets[0] == 1 && tets[1] == 1 && of_tet[0] == of_tet[1]
-                                      : walls == 2 && of_tet[0] == of_wall[0] && of_tet[1] == of_wall[1]);
-        if (fits) continue;
+        if (fit_together(i, j, wall)) continue;
         if (wall >= 0) findings[chunk].triangles.push_back(wall);
         else ++loose[chunk];
       }

@@ -8,9 +8,9 @@ namespace stackmesh {
 /// How mid-side nodes are placed, and how valid the elements stay \cite johnen2013 .
 struct OrderOptions {
   bool follow_surface = true;  ///< nodes on curved interfaces leave the straight edge for the smooth surface
-  /// the flat triangles hold the right volume, so their corners stand off the true surface (the
+  /// the flat triangles hold the right volume, so their corners stand off the true surface (the enhanced one): corners
+  /// move onto it, by the height of the arcs around them; false: corners stay
   bool volumes_restored = false;
-  ///< enhanced one): corners move onto it, by the height of the arcs around them; false: corners stay
   double ridge_deg = 40;  ///< two triangles that turn by more meet in a sharp edge: the surface is not smooth across it
   double jacobian_rel = 0.2;  ///< smallest Jacobian determinant allowed anywhere in an element, as a fraction of
                               ///< that of the straight-sided element; above 0, below 1

@@ -47,7 +47,7 @@ std::size_t asked(const char* name, std::size_t usual) {
 }
 
 TEST(RandomStacksAtDefaults, AreClosedWholeAndEnhanced) {
-  const std::size_t count = asked("STACKMESH_RANDOM_STACKS", 120), first = asked("STACKMESH_FIRST_SEED", 0);
+  const std::size_t count = asked("STACKMESH_RANDOM_STACKS", 80), first = asked("STACKMESH_FIRST_SEED", 0);
   std::vector<DefaultRun> runs(count);
   parallel_for(count, 0, [&](std::size_t i) {
     runs[i] = run_at_defaults(stack_of(first + i), (first + i) % 40 == 0 ? STACKMESH_WORKER : "");

@@ -108,6 +108,7 @@ TEST_F(AccuracyTest, CantileverIsRefinedUntilItIsAccurateAndTheReportSaysSo) {
   EXPECT_FALSE(a["reached"]) << a;
   EXPECT_EQ(a["elements"], (std::vector<int>{192, 1536, 12288}));
   EXPECT_NE(read("fem.log").find("was not reached"), std::string::npos) << read("fem.log");
+  EXPECT_EQ(places_of("accuracy"), std::vector<std::string>{"set " + a["worst_set"].get<std::string>()});
   fem(sets + "--accuracy 5% --order 2 -o two.inp");
   a = report()["fem"]["accuracy"];
   EXPECT_TRUE(a["reached"]) << a;
@@ -119,6 +120,13 @@ TEST_F(AccuracyTest, CantileverIsRefinedUntilItIsAccurateAndTheReportSaysSo) {
     EXPECT_NEAR(double(s["displacement_max_mm"].back()) / (bent + sheared), 1, 0.02);
   }
   EXPECT_NE(read("fem.log").find("accuracy  "), std::string::npos);
+}
+
+TEST_F(AccuracyTest, WarningsOfAGivenMeshNameItsFile) {
+  write_mesh("m.vtu", block(2, 2, 2, {1, 1, 1}, [](int, int, int) { return 1; }));
+  fem("m.vtu --order 2 -o two.vtu");
+  fem("two.vtu --order 1 --report r.json -o one.inp");
+  EXPECT_EQ(places_of("element_order"), std::vector<std::string>{"two.vtu"});
 }
 
 TEST_F(AccuracyTest, RefusalsComeBeforeAnythingIsMeshed) {

@@ -81,6 +81,14 @@ class SolverTest : public ::testing::Test {
     files.commit();
   }
   nlohmann::json report(const std::string& name = "r.json") const { return nlohmann::json::parse(read(name)); }
+  /// The places of the report's warnings of that code.
+  std::vector<std::string> places_of(const std::string& code) const {
+    std::vector<std::string> places;
+    const nlohmann::json r = report();
+    for (const auto& w : r["warning_details"])
+      if (w["code"] == code) places.push_back(w["where"]);
+    return places;
+  }
   std::string folder_;
 };
 

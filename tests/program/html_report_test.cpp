@@ -94,7 +94,7 @@ TEST_F(HtmlReport, ColoursTheSolverModelBySetLoadModulusAndStress) {
     input.insert(input.end(), more.begin(), more.end());
     succeeds(input);
   };
-  const std::vector<std::string> labels = {testdata("border.nii.gz"), "--edge-length", "6"};
+  const std::vector<std::string> labels = {testdata("border.nii.gz"), "--edge-length", "8"};
   fem(labels, {});
   ASSERT_EQ(std::system(("cd '" + out("") + "' && OMP_NUM_THREADS=1 ccx -i a >ccx.log 2>&1").c_str()), 0);
   fem(labels, {"--result", out("a.frd")});
@@ -107,12 +107,12 @@ TEST_F(HtmlReport, ColoursTheSolverModelBySetLoadModulusAndStress) {
   };
   all_colours();
   // Of a given mesh, too; and a result of another mesh is refused.
-  succeeds({"mesh", labels[0], "--edge-length", "6", "--order", "2", "-o", in("m.vtu"), "--quiet"});
+  succeeds({"mesh", labels[0], "--edge-length", "8", "--order", "2", "-o", in("m.vtu"), "--quiet"});
   fem({in("m.vtu")}, {});
   ASSERT_EQ(std::system(("cd '" + out("") + "' && OMP_NUM_THREADS=1 ccx -i a >ccx.log 2>&1").c_str()), 0);
   fem({in("m.vtu")}, {"--result", out("a.frd")});
   all_colours();
-  const Ended other = stackmesh({"fem", labels[0], "--edge-length", "9", "--materials", law, "-o", out("b.inp"),
+  const Ended other = stackmesh({"fem", labels[0], "--edge-length", "11", "--materials", law, "-o", out("b.inp"),
                                  "--report", out("R.html"), "--result", out("a.frd")});
   EXPECT_EQ(other.code, 3);
   EXPECT_NE(other.err.find("another mesh"), std::string::npos) << other.err;

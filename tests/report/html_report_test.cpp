@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "../validate/shapes.h"
@@ -412,29 +414,85 @@ TEST(HtmlReport, TheSameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(HtmlReport, ABigSurfaceIsSimplifiedAndKeepsItsWorstPlaceAndShape) {
+/// Directed edges of a label's shell that no other one runs against.
+std::size_t open_edges(const Mesh& m, int label) {
+  std::map<std::pair<int, int>, int> sum;
+  for (std::size_t t = 0; t < m.elements.size(); ++t) {
+    const int sign = (m.labels[t][0] == label) - (m.labels[t][1] == label);
+    for (int k = 0; k < 3; ++k) {
+      const int a = m.elements[t][k], b = m.elements[t][(k + 1) % 3];
+      sum[{std::min(a, b), std::max(a, b)}] += a < b ? sign : -sign;
+    }
+  }
+  return std::count_if(sum.begin(), sum.end(), [](const auto& e) { return e.second != 0; });
+}
+
+TEST(HtmlReport, ABigSurfaceIsDecimatedAndKeepsItsWorstPlaceAndShape) {
   LabelVolume v = empty_volume(60, 60, 60, 1);
   fill(v, {10, 10, 10}, {49, 49, 49}, 1);
-  InterfaceComplex sphere = icosphere(20, 8, 1, {29.5, 29.5, 29.5});  // 1.3 million triangles
+  InterfaceComplex sphere = icosphere(20, 7, 1, {29.5, 29.5, 29.5});  // 327,680 triangles
   const Vec3 worst = {29.5, 29.5, 29.5 + 20.9};
   for (Vec3& p : sphere.points)
-    if (p.z > 29.5 + 19.999) p = worst;
+    if (p.z > 29.5 + 19.998) p = worst;
   HtmlScene scene;
   scene.surface = &sphere;
   scene.volume = &v;
-  const std::string html = page(scene, plain_report());
-  EXPECT_LT(html.size(), 25u * 1000 * 1000);
+  HtmlOptions options;
+  options.bytes_limit = 3600 * 1000;
+  const std::string html = page(scene, plain_report(), options);
   const Json pictures = page_data(html)["meshes"][0]["pictures"];
-  EXPECT_GT(pictures["surface"]["cell_mm"], 0.05);
+  EXPECT_EQ(pictures["surface"]["cell_mm"], 0);
   EXPECT_EQ(pictures["surface"]["of"], sphere.triangles.size());
   const Mesh m = mesh(html, 0, "surface");
-  EXPECT_LE(m.elements.size(), 400000u);
-  EXPECT_GT(m.elements.size(), 100000u);
-  EXPECT_NEAR(enclosed(m, 1), 4.0 / 3 * kPi * 8000, 0.005 * 33510);
+  EXPECT_LE(m.elements.size(), 110000u);
+  EXPECT_GT(m.elements.size(), 50000u);
+  EXPECT_NEAR(enclosed(m, 1), 4.0 / 3 * kPi * 8000, 0.001 * 33510);
+  EXPECT_EQ(open_edges(m, 1), 0u);
   bool found = false;
   for (const auto& place : pictures["worst"])
     found = found || (place["kind"] == "angle" && std::abs(place["at_mm"][2].get<double>() - worst.z) < 1);
   EXPECT_TRUE(found);
+  EXPECT_LT(*std::min_element(m.angles_deg.begin(), m.angles_deg.end()), 1);
+  for (const auto& h : pictures["histograms"]) {
+    if (h["name"] != "distances") continue;
+    EXPECT_NEAR(*std::max_element(m.distances_mm.begin(), m.distances_mm.end()), h["largest"].get<double>(), 0.1);
+  }
+}
+
+TEST(HtmlReport, DecimationOpensNothingBetweenLabels) {
+  const int n = 56;
+  LabelVolume v = empty_volume(n, n, n, 5);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(6, n - 6);
+  std::array<Vec3, 5> seeds;
+  for (Vec3& s : seeds) s = {place(random), place(random), place(random)};
+  const Vec3 middle = {n / 2.0, n / 2.0, n / 2.0};
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const Vec3 p = {x + 0.5, y + 0.5, z + 0.5};
+        if (norm(p - middle) > 0.45 * n) continue;
+        std::size_t nearest = 0;
+        for (std::size_t s = 1; s < seeds.size(); ++s)
+          if (norm(p - seeds[s]) < norm(p - seeds[nearest])) nearest = s;
+        v.voxels[v.index(x, y, z)] = static_cast<std::uint16_t>(nearest + 1);
+      }
+  const InterfaceComplex surface = voxel_surface(v);
+  HtmlScene scene;
+  scene.surface = &surface;
+  scene.volume = &v;
+  const Mesh full = mesh(page(scene, plain_report()), 0, "surface");
+  ASSERT_EQ(full.elements.size(), surface.triangles.size());
+  HtmlOptions options;
+  options.bytes_limit = surface.triangles.size() * 20;
+  const std::string html = page(scene, plain_report(), options);
+  EXPECT_EQ(page_data(html)["meshes"][0]["pictures"]["surface"]["cell_mm"], 0);
+  const Mesh m = mesh(html, 0, "surface");
+  EXPECT_LT(m.elements.size(), 0.7 * static_cast<double>(full.elements.size()));
+  for (int label = 1; label <= 5; ++label) {
+    EXPECT_EQ(open_edges(m, label), open_edges(full, label)) << label;
+    EXPECT_NEAR(enclosed(m, label), enclosed(full, label), 0.02 * enclosed(full, label)) << label;
+  }
 }
 
 TEST(HtmlReport, ALimitOfBytesIsKept) {

@@ -179,6 +179,20 @@ TEST(CheckFidelity, AsManyPiecesAreNotAMatchWhenTheyAreOthers) {
   EXPECT_FALSE(l.components_match);
 }
 
+TEST(CheckFidelity, AComponentThatAPieceJoinedIsNotMissingThoughItsCentresAreLeftOut) {
+  LabelVolume v = empty_volume(6, 3, 3, 1);
+  fill(v, {0, 1, 1}, {2, 2, 2}, 1);
+  fill(v, {3, 1, 1}, {4, 2, 2}, 1);  // its voxel reaches from 2.5 to 3.5
+  for (const double end : {2.4, 2.7}) {
+    const LabelFidelity l = check_fidelity(box({-0.5, 0.5, 0.5}, {end, 1.5, 1.5}, 1), v)[0];
+    EXPECT_EQ(l.input_components, 2);
+    EXPECT_EQ(l.components, 1);
+    EXPECT_FALSE(l.components_match);
+    EXPECT_EQ(l.missing_components, end < 2.5 ? 1u : 0u) << end;
+    EXPECT_EQ(l.missing.size(), l.missing_components);
+  }
+}
+
 TEST(CheckFidelity, SpareAndPinchedPiecesAreNotAMatch) {
   LabelVolume v = three_cubes();
   InterfaceComplex c = voxel_surface(v);

@@ -291,5 +291,30 @@ TEST(EstimateTets, IsNearWhatIsMade) {
   }
 }
 
+/// A plate whose squares have sides of 1 mm, so that triangles' mean edge is (2 + sqrt 2) / 3 mm.
+InterfaceComplex plate(int wide, double thick_mm) {
+  return shapes::voxels(wide, wide, 1, {1, 1, thick_mm}, [](int, int, int) { return 5; });
+}
+
+TEST(ThicknessInEdges, IsThatOfAPlateAndOfABall) {
+  const double edge = (2 + std::sqrt(2.0)) / 3;
+  EXPECT_NEAR(thickness_in_edges(plate(200, 0.25)), 0.25 / edge, 0.002);
+  EXPECT_NEAR(thickness_in_edges(plate(1, 1)), 1.0 / 3 / edge, 1e-12);  // 2 * 1 mm3 / 6 mm2
+  const InterfaceComplex ball = shapes::sphere(3, 10);                  // 2/3 of the radius, edges of about 1.4 mm
+  EXPECT_NEAR(thickness_in_edges(ball), 20.0 / 3 / 1.4, 0.4);
+  EXPECT_EQ(thickness_in_edges({}), 0);
+}
+
+TEST(ImproveTets, LabelsFilledWithoutRefinementAreFilledInHalvesToo) {
+  const InterfaceComplex complex =  // above 10,000 triangles
+      shapes::voxels(60, 60, 1, {1, 1, 0.5}, [](int i, int, int) { return i < 30 ? 5 : 6; });
+  FillOptions options;
+  options.improve_deg = 24;
+  const FillResult r = fill_volume(complex, options);
+  ASSERT_EQ(r.status, FillResult::Status::verified) << r.message;
+  EXPECT_NE(r.message.find("TetGen -pYM in 2 parts"), std::string::npos) << r.message;
+  for (const Label label : {5, 6}) EXPECT_NEAR(shapes::volumes(r.mesh).at(label), 30 * 60 * 0.5, 1e-6);
+}
+
 }  // namespace
 }  // namespace stackmesh

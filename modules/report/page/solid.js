@@ -391,7 +391,7 @@ class SolidView {
 
   describe() {
     const p = this.mesh.p, s = p.surface, parts = [];
-    parts.push(s.cell_mm > 0 ? figure(s.elements) + ' triangles drawn for ' + figure(s.of) + ': the surface is simplified for this picture (vertices within ' + figure(s.cell_mm, 2) + ' mm joined); all figures are of the whole mesh'
+    parts.push(s.elements < s.of ? figure(s.elements) + ' triangles drawn for ' + figure(s.of) + ': the surface is simplified for this picture' + (s.cell_mm > 0 ? ' (vertices within ' + figure(s.cell_mm, 2) + ' mm joined)' : '') + '; all figures are of the whole mesh'
         : figure(s.elements) + ' triangles, as they are');
     if (p.tets) parts.push(p.tets.one_of > 1 ? figure(p.tets.elements) + ' of ' + figure(p.tets.of) + ' tetrahedra (one in ' + p.tets.one_of + ')' : figure(p.tets.elements) + ' tetrahedra, all');
     else parts.push('no tetrahedra');

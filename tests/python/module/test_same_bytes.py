@@ -25,7 +25,7 @@ class SameBytes(FolderTest):
     def test_a_path_in_every_format(self):
         femur = testdata("femur.nii.gz")
         volumes = [".vtu", ".msh", ".inp", ".feb", ".bdf", ".cdb", ".k", ".vtk", ".mesh"]
-        self.saves_as(stackmesh.mesh(femur), "mesh", [femur], volumes + [".stl", ".ply", ".obj", ".off", ".vtp"])
+        self.saves_as(stackmesh.mesh(femur, edge_length=6), "mesh", [femur, "--edge-length", "6"], volumes + [".stl", ".ply", ".obj", ".off", ".vtp"])
 
     def test_options(self):
         heart = testdata("heart4.nii.gz")
@@ -35,8 +35,8 @@ class SameBytes(FolderTest):
 
     def test_voids_and_merge(self):
         heart = testdata("heart4.nii.gz")
-        self.saves_as(stackmesh.mesh(heart, void=1), "mesh", [heart, "--void", "1"], [".vtu", ".inp", ".vtp", ".stl"])
-        self.saves_as(stackmesh.mesh(heart, merge=True), "mesh", [heart, "--merge"], [".vtu", ".stl"])
+        self.saves_as(stackmesh.mesh(heart, void=1, edge_length=6), "mesh", [heart, "--void", "1", "--edge-length", "6"], [".vtu", ".inp", ".vtp", ".stl"])
+        self.saves_as(stackmesh.mesh(heart, merge=True, edge_length=6), "mesh", [heart, "--merge", "--edge-length", "6"], [".vtu", ".stl"])
 
     def test_surface(self):
         shells = testdata("shells.nii.gz")
