@@ -26,8 +26,9 @@ InsideVoxels::InsideVoxels(const IntensityVolume& image, const TetMesh& mesh, co
   }
   const double lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
   for (int d = 0; d < 3; ++d) {
-    low_[d] = std::clamp(static_cast<int>(std::floor(lows[d])) - 1, 0, image.size[d] - 1);
-    size_[d] = std::clamp(static_cast<int>(std::ceil(highs[d])) + 1, 0, image.size[d] - 1) - low_[d] + 1;
+    const double last = image.size[d] - 1;  // a mesh may reach farther than an int counts
+    low_[d] = static_cast<int>(std::clamp(std::floor(lows[d]) - 1, 0.0, last));
+    size_[d] = static_cast<int>(std::clamp(std::ceil(highs[d]) + 1, 0.0, last)) - low_[d] + 1;
   }
   const std::size_t count = static_cast<std::size_t>(size_[0]) * size_[1] * size_[2];
   state_.assign(count, 0);
@@ -55,8 +56,8 @@ void InsideVoxels::mark_inside(const TetMesh& mesh, const std::vector<std::int32
         least = std::min(least, part(p[k]));
         most = std::max(most, part(p[k]));
       }
-      from = std::max(0, static_cast<int>(std::ceil(least - 1e-9)));
-      to = std::min(size_[d] - 1, static_cast<int>(std::floor(most + 1e-9)));
+      from = static_cast<int>(std::clamp<double>(std::ceil(least - 1e-9), 0, size_[d]));
+      to = static_cast<int>(std::clamp<double>(std::floor(most + 1e-9), -1, size_[d] - 1));
     };
     int x0, x1, y0, y1, z0, z1;
     range([](Vec3 v) { return v.x; }, 0, x0, x1);

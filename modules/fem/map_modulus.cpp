@@ -77,7 +77,7 @@ std::vector<ModulusLaw::Value> map_modulus(const TetMesh& mesh, const std::vecto
           longest =
               std::max(longest, norm(mesh.points[mesh.tets[element][e[0]]] - mesh.points[mesh.tets[element][e[1]]]));
       }
-      const int n = std::clamp(static_cast<int>(std::ceil(1.5 * longest / voxel_mm)) + 1, 3, kMost);
+      const int n = static_cast<int>(std::clamp<double>(std::ceil(1.5 * longest / voxel_mm) + 1, 3, kMost));
       double weights = 0, intensity = 0;
       ModulusLaw::Value sum;
       const auto add = [&](const Vec3& position, double w) {

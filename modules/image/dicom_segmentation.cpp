@@ -158,7 +158,9 @@ class SegmentationReader {
       if (type_ != Type::label_map) {
         const std::vector<double> number =
             group(groups, DCM_SegmentIdentificationSequence, DCM_ReferencedSegmentNumber, f);
-        const auto found = number.empty() ? index_of_.end() : index_of_.find(static_cast<Label>(number[0]));
+        const bool usable =
+            !number.empty() && number[0] >= 0 && number[0] <= 65535 && number[0] == std::floor(number[0]);
+        const auto found = usable ? index_of_.find(static_cast<Label>(number[0])) : index_of_.end();
         if (number.empty() && segments_.size() == 1) frame.segment = 1;
         else if (found == index_of_.end())
           fail_input("a frame belongs to no segment that the file describes", frame_name(f), again);
@@ -178,7 +180,7 @@ class SegmentationReader {
     const double gap = slice_gap(heights);
     const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
     const double count = std::round((*high - *low) / gap) + 1;
-    if (count > 64.0 * static_cast<double>(frames_.size()) + 1000)
+    if (!(count <= 64.0 * static_cast<double>(frames_.size()) + 1000))  // a NaN is absurd, too
       fail_input("the segmentation's " + std::to_string(frames_.size()) + " frames span an absurd number of slices",
                  path_, again);
     require_memory(static_cast<std::uint64_t>(2 * count) * static_cast<std::uint64_t>(rows_ * columns_),
@@ -193,7 +195,7 @@ class SegmentationReader {
     for (std::size_t f = 0; f < frames_.size(); ++f) {
       const double slice = (heights[f] - *low) / volume_.spacing_mm[2];
       frames_[f].slice = static_cast<int>(std::lround(slice));
-      if (std::abs(slice - frames_[f].slice) > 0.05)
+      if (!(std::abs(slice - frames_[f].slice) <= 0.05))
         fail_input("the frames are not evenly spaced", frame_name(f), "resample the segmentation to even slices");
       frames_of_[frames_[f].slice].push_back(f);
     }

@@ -225,7 +225,7 @@ class SeriesReader {
                                          " mm; the slices are taken to an even grid by their true positions"));
     const double wanted = multiples ? usual : smallest;
     const double count = std::round(span / wanted) + 1;
-    if (count > 64.0 * static_cast<double>(n) + 256)
+    if (!(count <= 64.0 * static_cast<double>(n) + 256))
       fail_input("the gaps of the slices differ too much for an even grid", path_,
                  "resample the series to even slices");
     count_ = static_cast<int>(count);

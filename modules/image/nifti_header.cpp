@@ -172,6 +172,7 @@ class NiftiReader {
   Form qform() const {
     double b = checked(h_.quatern_b), c = checked(h_.quatern_c), d = checked(h_.quatern_d),
            a = 1 - (b * b + c * c + d * d);
+    if (!std::isfinite(a)) damaged("the header is damaged: its rotation (quatern_b, _c, _d) is too large", path_);
     if (a < 1e-7) {
       const double length = std::sqrt(b * b + c * c + d * d);
       b /= length, c /= length, d /= length;
@@ -203,7 +204,7 @@ class NiftiReader {
     const bool by_s = has_s && (h_.sform_code == NIFTI_XFORM_SCANNER_ANAT || !has_q);
     const Form form = by_s ? sform() : qform();
     if (by_s && !(cosine_error(form) <= 1e-4))  // a zero column gives a NaN
-      fail_input("the voxel grid is sheared or its directions (sform) are zero", path_,
+      fail_input("the voxel grid is sheared, or its directions (sform) are zero or too large", path_,
                  "resample the labels to a rectangular grid with nearest neighbour");
     for (int d = 0; d < 3; ++d) header_.axes[d] = unit(form[d]);
     header_.origin_mm = unit_mm_ * form[3];

@@ -123,6 +123,9 @@ class Parser {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (text.empty() || error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
       fail(token, std::string("a finite ") + what);
+    if (std::abs(value) > 1e12)
+      fail_input("'" + std::string(text.substr(0, 40)) + "' is farther away than 1e12 mm",
+                 path_ + ", line " + std::to_string(token.line), "give coordinates in mm");
     return value;
   }
 

@@ -134,12 +134,16 @@ LabelVolume read_any(const std::string& path, const ReadOptions& options) {
 
 LabelVolume read_label_volume(const std::string& path, const ReadOptions& options) {
   if (options.spacing_mm)
-    for (double s : *options.spacing_mm)
+    for (double s : *options.spacing_mm) {
       if (!std::isfinite(s) || s <= 0)
         fail_usage("a voxel size must be finite and above 0", "--spacing", "write --spacing X,Y,Z in mm");
+      if (s < 1e-12 || s > 1e12)
+        fail_usage("a voxel size must be between 1e-12 and 1e12 mm", "--spacing", "write --spacing X,Y,Z in mm");
+    }
   LabelVolume volume = read_any(path, options);
   if (volume.labels.size() < 2)
     fail_input("no label: every voxel is background (0)", path, "give a volume that holds at least one label");
+  check_grid(volume.spacing_mm, volume.origin_mm, path);
   return volume;
 }
 

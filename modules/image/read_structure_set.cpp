@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/warning.h"
@@ -135,11 +136,15 @@ class StructureSetReader {
       if (data.size() % 3 != 0)
         fail_input("a contour has " + std::to_string(data.size()) + " coordinates, no multiple of three",
                    where(k, number), again);
+      for (const double value : data)
+        if (!(std::abs(value) <= 1e12))
+          fail_input("a contour has a point farther away than 1e12 mm", where(k, number), again);
       const std::optional<double> announced = number_of(*item, DCM_NumberOfContourPoints, where(k, number));
-      if (announced && *announced != static_cast<double>(data.size() / 3))
-        set_.warnings.push_back(warning_at(WarningCode::header, where(k, number),
-                                           std::to_string(data.size() / 3) + " points where its header says " +
-                                               std::to_string(static_cast<long>(*announced)) + "; all are read"));
+      if (announced && *announced != static_cast<double>(data.size() / 3)) {
+        std::ostringstream text;
+        text << data.size() / 3 << " points where its header says " << *announced << "; all are read";
+        set_.warnings.push_back(warning_at(WarningCode::header, where(k, number), text.str()));
+      }
       RawContour c;
       c.structure = k;
       c.number = number;

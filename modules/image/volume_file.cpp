@@ -11,6 +11,7 @@
 #include "image/palette.h"
 #include "image/segments.h"
 #include "image/volume_header.h"
+#include "model/label_volume.h"
 
 namespace stackmesh {
 
@@ -58,6 +59,7 @@ void take_grid(const VolumeHeader& header, Volume& volume, const std::string& pa
   require_spacing(volume.spacing_mm.data(), 3, path);
   volume.origin_mm = header.origin_mm + Vec3{0, 0, 0};  // -0 becomes 0
   volume.axes = orthonormal_axes(header.axes, path);
+  check_grid(volume.spacing_mm, volume.origin_mm, path);
 }
 
 std::size_t voxels_of(const VolumeHeader& header) {

@@ -112,10 +112,10 @@ std::vector<std::uint64_t> whole_sizes(const std::vector<double>& sizes, double 
 
 void require_spacing(const double* spacing, std::size_t count, const std::string& path) {
   for (std::size_t i = 0; i < count; ++i)
-    if (!std::isfinite(spacing[i]) || spacing[i] <= 0) {
+    if (!(spacing[i] >= 1e-12 && spacing[i] <= 1e12)) {  // in the file's unit; check_grid looks again, at mm
       std::ostringstream text;
       text << "the voxel size is " << spacing[i] << " along axis " << i + 1;
-      fail_input(text.str(), path, "give the file a finite voxel size above 0");
+      fail_input(text.str(), path, "give the file a finite voxel size above 0, between 1e-12 and 1e12");
     }
 }
 

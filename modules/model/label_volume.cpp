@@ -3,10 +3,35 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <sstream>
 
 #include "base/error.h"
 
 namespace stackmesh {
+namespace {
+
+constexpr double kLeastVoxel = 1e-12, kLargestVoxel = 1e12, kFarthestVoxels = 1e14;
+
+std::string short_number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+void check_grid(const std::array<double, 3>& spacing_mm, Vec3 origin_mm, const std::string& name) {
+  for (int d = 0; d < 3; ++d)
+    if (!(spacing_mm[d] >= kLeastVoxel && spacing_mm[d] <= kLargestVoxel))
+      fail_input("voxels are " + short_number(spacing_mm[d]) + " mm long along " + std::string(1, "xyz"[d]), name,
+                 "give the size of a voxel in mm, between 1e-12 and 1e12");
+  const double far = std::max({std::abs(origin_mm.x), std::abs(origin_mm.y), std::abs(origin_mm.z)}),
+               least = *std::min_element(spacing_mm.begin(), spacing_mm.end());
+  if (!(far <= kFarthestVoxels * least))
+    fail_input("the first voxel lies " + short_number(far) + " mm away from the origin, where voxels of " +
+                   short_number(least) + " mm cannot be told apart",
+               name, "move the volume nearer to the origin");
+}
 
 void check_label_volume(const LabelVolume& v, const std::string& name) {
   const auto refuse = [&](const std::string& what, const std::string& mend) {
@@ -26,6 +51,7 @@ void check_label_volume(const LabelVolume& v, const std::string& name) {
   }
   if (!std::isfinite(v.origin_mm.x + v.origin_mm.y + v.origin_mm.z))
     refuse("the origin is not finite", "give the centre of the first voxel in mm");
+  check_grid(v.spacing_mm, v.origin_mm, name.empty() ? "the label volume" : name);
   if (v.voxels.size() != voxels)
     refuse(std::to_string(v.voxels.size()) + " voxels for a size of " + std::to_string(voxels),
            "give as many as the size says");

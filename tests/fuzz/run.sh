@@ -33,6 +33,7 @@ seed_all dicom .dcm .dcm
 seed_all contours .cnt
 seed_all meshes .stl .ply .obj .off .vtp .vtk .vtu .msh .inp .mesh
 seed_all tables .json
+python3 tests/fuzz/make_seeds.py build-fuzz/corpus
 mkdir -p build-fuzz/corpus/pipeline
 cp tests/fuzz/stacks/* build-fuzz/corpus/pipeline  # read by tests/enhance, too
 

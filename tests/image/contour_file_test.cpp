@@ -30,6 +30,13 @@ TEST_F(ContourInput, IsToldByItsEnding) {
   EXPECT_FALSE(is_contour_input("cnt"));
 }
 
+TEST_F(ContourInput, PointsAndHeightsBeyondReasonAreRefused) {
+  refuse("S 2\nv 4 z 0\n" + square + "v 4 z 1e200\n" + square, {"'1e200' is farther away than 1e12 mm", "line 9"});
+  refuse("S 1\nv 3 z 0\n{\n0 0\n-2e12 0\n0 1\n}\n", {"'-2e12' is farther away than 1e12 mm", "line 5"});
+  EXPECT_EQ(read_contour_file(write("a.cnt", "S 2\nv 4 z 0\n" + square + "v 4 z 1e12\n" + square)).sections[1].z_mm,
+            1e12);
+}
+
 TEST_F(ContourInput, SectionsAreSortedAndEmptyOnesKept) {
   const LabelContours f = read_contour_file(
       write("a.cnt", "S 3\nv 4 z 2.5\n" + square + "v 0 z 1.25\nv 7 z -1e0\n" + square + "{\n1 1\n2 1\n1 2.5\n}\n"));

@@ -304,6 +304,36 @@ TEST_F(VolumeFile, BadSpacingIsAnErrorInEveryFormat) {
                     {"voxel size"});
 }
 
+TEST_F(VolumeFile, GridsThatDoublePrecisionCannotHoldAreRefused) {
+  const Bytes voxels = pack<std::uint8_t>(twelve);
+  for (const std::string size : {"1e200", "1e-200", "1.1e12", "0.9e-12"}) {
+    expect_unreadable(write("s.nrrd", nrrd("uchar", "spacings: 1 " + size + " 1\n", voxels)),
+                      {"voxel size", "axis 2", "between 1e-12 and 1e12"});
+    expect_unreadable(write("s.mha", metaimage("MET_UCHAR", "ElementSpacing = 1 " + size + " 1\n", voxels)),
+                      {"voxel size", "axis 2", "between 1e-12 and 1e12"});
+  }
+  for (const std::string size : {"1e12", "1e-12"}) {
+    const auto v = stackmesh::read_label_volume(write("s.nrrd", nrrd("uchar", "spacings: 1 " + size + " 1\n", voxels)));
+    EXPECT_EQ(v.spacing_mm[1], std::stod(size));
+  }
+  Nifti micron;  // 1e-11 of its unit is 1e-14 mm
+  micron.pixdim = {1, 1, 1, 1e-11f};
+  micron.units = 3;
+  expect_unreadable(write("s.nii", micron.header() + voxels), {"voxel size", "axis 3"});
+
+  const auto with_origin = [&](const std::string& x) {
+    return nrrd("uchar", "space: LPS\nspace directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (0," + x + ",0)\n",
+                voxels);
+  };
+  expect_unreadable(write("o.nrrd", with_origin("-1e17")), {"1e+17 mm away", "voxels of 1 mm cannot be told apart"});
+  EXPECT_EQ(stackmesh::read_label_volume(write("o.nrrd", with_origin("1e14"))).origin_mm.y, 1e14);
+
+  stackmesh::ReadOptions options;
+  options.spacing_mm = std::array<double, 3>{1, 1, 1e13};
+  expect_error([&] { stackmesh::read_label_volume(at("none.png"), options); }, {"--spacing", "between 1e-12 and 1e12"},
+               stackmesh::ErrorKind::usage);
+}
+
 TEST_F(VolumeFile, ShearBeyondToleranceIsAnError) {
   Nifti n;
   n.srow[1] = 3e-4f;

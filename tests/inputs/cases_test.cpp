@@ -259,4 +259,10 @@ TEST_F(Cases, AbsurdHeightsAndSpacingsAreToldAndKeptAsStitched) {
   kept(write("far.cnt", text), "mm apart");
 }
 
+TEST_F(Cases, NumbersOfDicomThatAreAbsurdAreTold) {
+  refuses(file("rt_far.dcm"), {"farther away than 1e12 mm", "'box'", "contour 2"});
+  const Ended r = succeeds({"surface", file("rt_points_1e300.dcm"), "-o", out("a.stl")});
+  EXPECT_TRUE(r.warns_of("4 points where its header says 1e+300")) << r.err;
+}
+
 }  // namespace
