@@ -48,7 +48,10 @@ struct LabelVolume {
 
 /// Whether double precision can tell the voxels of a grid apart, and areas and volumes of it can be calculated: voxels
 /// of 1e-12 to 1e12 mm, whose origin is at most 1e14 times the smallest of these sizes away.
-/// @param name what the error calls it @throws Error(input)
+/// @param spacing_mm size of a voxel along each axis
+/// @param origin_mm centre of the first voxel, world
+/// @param name what the error calls the volume, usually its path
+/// @throws Error(input)
 void check_grid(const std::array<double, 3>& spacing_mm, Vec3 origin_mm, const std::string& name);
 
 /// Whether a volume is as its comments above say: as many voxels as the size asks for, each with an entry in `labels`,
