@@ -46,12 +46,8 @@ double qualities_at(const std::vector<FanTet>& fan, const Vec3& p, double stop, 
 }  // namespace
 
 double fan_quality(const std::vector<FanTet>& fan, const Vec3& p, double stop) {
-  double worst = 2;
-  for (const FanTet& t : fan) {
-    worst = std::min(worst, quality_of(t, p));
-    if (worst <= stop) return worst;
-  }
-  return worst;
+  std::vector<double> each;
+  return qualities_at(fan, p, stop, each);
 }
 
 Vec3 best_place(const std::vector<FanTet>& fan, Vec3 p, double& quality, double enough,

@@ -94,37 +94,30 @@ class Filler {
     const double scale = volume::z_scale_for_aspect(complex_);
     const bool wants_refinement = options_.radius_edge || options_.dihedral_deg || options_.max_volume_mm3 ||
                                   options_.inner_growth || !options_.label_max_volume_mm3.empty();
+    // What comes first must leave time for the plain filling of the whole.
+    const auto budget = std::chrono::duration_cast<Clock::duration>((deadline_ - Clock::now()) * 0.6);
+    const Clock::time_point until = std::min(deadline_, Clock::now() + budget);
     std::string before;  // what was tried and failed, for the message
     bool refinement_pays = wants_refinement;
-    if (wants_refinement) {
-      // The plain filling must still fit in the time.
-      const auto budget = std::chrono::duration_cast<Clock::duration>((deadline_ - Clock::now()) * 0.6);
-      const Clock::time_point until = std::min(deadline_, Clock::now() + budget);
-      std::string note;
+    if (wants_refinement || options_.improve_deg) {  // both take time: in groups, side by side
       if (const std::vector<Group> own = groups(); !own.empty()) {
-        FillResult result = attempt({true, "", scale}, until, own);
+        FillResult result = attempt({wants_refinement, "", scale}, until, own);
         if (result.status == Status::verified || killed_) return result;
         retry_is_useless_ = false;  // the whole says why
         // another mesh than it gives elsewhere
-        if (result.status == Status::crashed || result.status == Status::timed_out) note = result.message;
+        if (result.status == Status::crashed || result.status == Status::timed_out) before = result.message;
         if (!options_.label_max_volume_mm3.empty())
-          note = result.message + ", so labels have no volume bound of their own";
+          before = result.message + ", so labels have no volume bound of their own";
       }
+    }
+    if (wants_refinement) {
       FillResult result = attempt({true, "", scale}, until);
-      if (result.status == Status::verified) return with_note(std::move(result), note);
+      if (result.status == Status::verified) return with_note(std::move(result), before);
       if (retry_is_useless_) return result;
       refinement_pays = result.status != Status::timed_out;
       before = result.message;
     }
-    const Call call{false, "", scale};
-    if (!wants_refinement && options_.improve_deg) {  // the improvement takes the time: in halves, as above
-      if (const std::vector<Group> own = groups(); !own.empty()) {
-        FillResult result = attempt(call, deadline_, own);
-        if (result.status == Status::verified || killed_) return result;
-        retry_is_useless_ = false;
-      }
-    }
-    FillResult result = attempt(call, deadline_);
+    FillResult result = attempt({false, "", scale}, deadline_);
     if (result.status == Status::verified) return with_note(std::move(result), before);
     if (retry_is_useless_ || result.status == Status::timed_out) return result;
 
