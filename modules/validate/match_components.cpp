@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kWithin = 0.49;  // voxels from the centre along each axis: clearly inside
 
+/// The line of voxels at these steps along U and V, within the grid.
+std::size_t line_at(const LabelRuns& runs, long u, long v) {
+  return static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
+}
+
 /// Middles and sizes of the components of the input, and pieces of the mesh, that nothing answers to.
 void locate_unmatched(const LabelRuns& runs, const InterfaceComplex& complex, const std::vector<Vec3>& points,
                       const Boundaries& boundaries, const std::vector<char>& component_lost,
@@ -113,8 +118,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_shrunk(const LabelRuns& 
          v <= std::min<long>(runs.size[2] - 1, std::lround((m.z + reach) / s[2])); ++v)
       for (long u = std::max(0L, std::lround((m.y - reach) / s[1]));
            u <= std::min<long>(runs.size[1] - 1, std::lround((m.y + reach) / s[1])); ++u) {
-        const std::size_t line =
-            static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
+        const std::size_t line = line_at(runs, u, v);
         for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
           const LabelRun& r = runs.runs[k];
           if (!component_lost[r.component] || taken[r.component] || r.label != row_label[boundaries.piece_row[p]])
@@ -154,8 +158,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_joined(const LabelRuns& 
         const long w = std::lround(x), u = std::lround(y), v = std::lround(z);
         if (std::max({std::abs(x - w), std::abs(y - u), std::abs(z - v)}) > kWithin) continue;
         if (u < 0 || v < 0 || u >= runs.size[1] || v >= runs.size[2]) continue;
-        const std::size_t line =
-            static_cast<std::size_t>(v) * static_cast<std::size_t>(runs.size[1]) + static_cast<std::size_t>(u);
+        const std::size_t line = line_at(runs, u, v);
         for (std::size_t k = runs.start[line]; k < runs.start[line + 1]; ++k) {
           const LabelRun& r = runs.runs[k];
           if (w < r.begin || w >= r.end || r.label != label || !component_lost[r.component] || taken[r.component])
